@@ -1,0 +1,1 @@
+"""Belief, motion and capture models, cost heuristics, path search, coordination."""
