@@ -1,6 +1,7 @@
 """Floor plan to convex cells, portals and cell graph."""
 
 from discretize.cellmap import CellMap, Portal, graph_components
+from discretize.cells_geojson import read_cells, write_cells
 from discretize.checks import CellReport, check_cells
 from discretize.cutting import convex_cells
 from discretize.errors import DiscretizeError
@@ -18,4 +19,6 @@ __all__ = [
     "convex_cells",
     "exact_cells",
     "graph_components",
+    "read_cells",
+    "write_cells",
 ]

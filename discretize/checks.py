@@ -1,5 +1,6 @@
 """What must hold for every cell map, checked afresh from its polygons."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,8 +13,9 @@ from discretize.methods import METHODS
 from discretize.portals import find_openings
 from discretize.routes import Ways, ways_of
 from discretize.sharing import segment_tree
+from maps import FloorPlan
 
-__all__ = ["CellReport", "check_cells"]
+__all__ = ["CellReport", "check_cells", "cover", "cover_problems"]
 
 _SHARE = 1e-9
 """Share of the free space that may be left out or covered twice."""
@@ -82,7 +84,7 @@ def check_cells(cellmap: CellMap) -> CellReport:
     """
     shapes = np.array(cellmap.cells, dtype=object)
     ways = ways_of(cellmap.plan.space, cellmap.radius)
-    coverage, overlap = _cover(cellmap)
+    coverage, overlap = cover(cellmap.plan, cellmap.cells)
     hulls = shapely.area(shapely.convex_hull(shapes))
     convexity = cellmap.areas / np.where(hulls > 0, hulls, 1.0)
     components = cellmap.components
@@ -100,36 +102,62 @@ def check_cells(cellmap: CellMap) -> CellReport:
         blocked_doors=tuple(k + 1 for k in blocked_doors(cellmap.plan, cellmap.portals)),
         problems=(),
     )
-    problems = (*_shape_problems(cellmap, report, convexity), *_graph_problems(cellmap, report, ways))
+    problems = (*_shape_problems(cellmap, convexity), *_graph_problems(cellmap, report, ways))
     return CellReport(**{name: getattr(report, name) for name in report.__slots__} | {"problems": problems})
 
 
-def _cover(cellmap: CellMap) -> tuple[float, float]:
-    """Shares of the free space that are covered, and that are covered twice or lie outside.
+def cover(plan: FloorPlan, cells: Sequence[shapely.Polygon]) -> tuple[float, float]:
+    """Share of the free space that cells cover, and share that they cover twice or beyond its walls.
 
     Sums of areas and of what pairs of cells share: a union of thousands of cells would move vertices.
     """
-    shapes, space = np.array(cellmap.cells, dtype=object), cellmap.plan.space
-    i, j = shapely.STRtree(list(cellmap.cells)).query(shapes, predicate="intersects")
-    twice = float(shapely.area(shapely.intersection(shapes[i[i < j]], shapes[j[i < j]])).sum())
+    shapes, space = np.array(cells, dtype=object), shapely.set_precision(plan.space, 0)
+    i, j = _overlapping(cells)
+    twice = float(shapely.area(shapely.intersection(shapes[i], shapes[j])).sum())
     shapely.prepare(space)
     outside = float(shapely.area(shapely.difference(shapes[~shapely.covers(space, shapes)], space)).sum())
-    covered = float(cellmap.areas.sum()) - twice - outside
+    covered = float(shapely.area(shapes).sum()) - twice - outside
     if twice > _SHARE * space.area:  # three cells may share a place
         covered = float(shapely.intersection(shapely.union_all(shapes), space).area)
     return min(covered / space.area, 1.0), (twice + outside) / space.area
 
 
-def _shape_problems(cellmap: CellMap, report: CellReport, convexity: NDArray[np.float64]) -> list[str]:
+def cover_problems(plan: FloorPlan, cells: Sequence[shapely.Polygon]) -> list[str]:
+    """Say where cells leave out free space, cover it twice or lie outside it; empty where they do not."""
+    coverage, overlap = cover(plan, cells)
+    problems = []
+    if coverage < 1 - _SHARE:
+        left = shapely.difference(plan.space, shapely.union_all(np.array(cells, dtype=object)))
+        problems.append(f"{(1 - coverage) * plan.area:.3g} m² of the free space lie in no cell, {_place(left)}.")
+    if overlap > _SHARE:
+        shapes = np.array(cells, dtype=object)
+        i, j = _overlapping(cells)
+        both, beyond = shapely.intersection(shapes[i], shapes[j]), shapely.difference(shapes, plan.space)
+        place = _place(*both, *beyond)
+        problems.append(f"{overlap * plan.area:.3g} m² lie in two cells or outside the free space, {place}.")
+    return problems
+
+
+def _overlapping(cells: Sequence[shapely.Polygon]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Pairs of cells that meet, the first before the second."""
+    i, j = shapely.STRtree(list(cells)).query(np.array(cells, dtype=object), predicate="intersects")
+    return i[i < j], j[i < j]
+
+
+def _place(*geometries: shapely.Geometry) -> str:
+    """Words for where the largest piece of something is."""
+    pieces = shapely.get_parts(np.array(geometries, dtype=object))
+    point = shapely.point_on_surface(max(pieces, key=shapely.area))
+    return f"the most of it at ({shapely.get_x(point):.3f}, {shapely.get_y(point):.3f})"
+
+
+def _shape_problems(cellmap: CellMap, convexity: NDArray[np.float64]) -> list[str]:
     problems = [
         f"Cell {k + 1} is not one simple polygon."
         for k, cell in enumerate(cellmap.cells)
         if not cell.is_valid or cell.is_empty or cell.interiors
     ]
-    if report.coverage < 1 - _SHARE:
-        problems.append(f"{(1 - report.coverage) * report.area:.3g} m² of the free space lie in no cell.")
-    if report.overlap > _SHARE:
-        problems.append(f"{report.overlap * report.area:.3g} m² lie in two cells or outside the free space.")
+    problems += cover_problems(cellmap.plan, cellmap.cells)
     promised = METHODS[cellmap.method].convexity if cellmap.method in METHODS else 0.0
     problems += [
         f"Cell {k + 1} fills {convexity[k]:.4f} of its convex hull; at least {promised:g} was promised."

@@ -206,6 +206,7 @@ def reach_of(space: FreeSpace, radius: float) -> Reach:
     radius : float
         Metres, at least 0.
     """
+    space = shapely.set_precision(space, 0)  # a geometry snapped to a grid would have its offsets snapped, too
     shrunk = space.buffer(-radius / cos(_LONGEST_CHORD / 2), quad_segs=_QUADRANT) if radius > 0 else space
     parts = [p for p in shapely.get_parts(shrunk) if isinstance(p, shapely.Polygon) and p.area > _SPECK]
     return Reach(radius, tuple(sorted(parts, key=lambda p: (-p.area, p.bounds))))

@@ -75,9 +75,9 @@ def triangulate(part: shapely.Polygon, doors: tuple[shapely.LineString, ...]) ->
     DiscretizeError
         If the triangles do not fill the polygon, which a valid polygon does not bring about.
     """
-    part = shapely.normalize(shapely.orient_polygons(part))
+    part = shapely.normalize(shapely.orient_polygons(shapely.set_precision(part, 0)))
     shapely.prepare(part)
-    near = [door for door in doors if part.dwithin(door, _SNAP)]
+    near = [shapely.set_precision(door, 0) for door in doors if part.dwithin(door, _SNAP)]
     feet = [foot for door in near if (foot := _on_walls(door, part)) is not None]
     part = _noded(part, feet)
     triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(part))

