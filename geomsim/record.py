@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import zipfile
 import zlib
@@ -11,12 +12,12 @@ from typing import Any
 
 import numpy as np
 import shapely
-from discretize import CellMap, Portal
-from maps import FloorPlan, GeomsimError, Label, Repair
 from numpy.typing import NDArray
 
+from discretize import CellMap, Portal
 from geomsim.episode import Episode, Outcome, Status
 from geomsim.files import replacing
+from maps import FloorPlan, GeomsimError, Label, Repair
 
 __all__ = ["FORMAT", "RecordError", "read_record", "write_record"]
 
@@ -169,7 +170,7 @@ def _join(rows: Sequence[NDArray[Any]], dtype: np.dtype[Any]) -> tuple[NDArray[A
 
 
 def _split(joined: NDArray[Any], splits: NDArray[np.int64]) -> tuple[NDArray[Any], ...]:
-    return tuple(joined[a:b] for a, b in zip(splits[:-1], splits[1:], strict=True))
+    return tuple(joined[a:b] for a, b in itertools.pairwise(splits))
 
 
 def _wkb(geometries: Sequence[shapely.Geometry]) -> NDArray[np.uint8]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from discretize import CellMap
 from numpy.typing import NDArray
+
+from discretize import CellMap
 
 __all__ = ["Route", "Routes", "Walker"]
 
@@ -148,4 +149,3 @@ class Walker:
         velocity = (self.pipeline[-1][0] - (position + velocity * dt)) / dt
         fast = float(np.hypot(*velocity))
         return velocity if fast <= self.speed else velocity * (self.speed / fast)
-

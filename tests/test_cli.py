@@ -11,13 +11,28 @@ from pathlib import Path
 import av
 import cv2
 import pytest
+
 from geomsim import Episode
 from geomsim.cli import main
 
 TWO_ROOMS = {
     "type": "Polygon",
     "coordinates": [
-        [[0, 0], [5, 0], [5, 1.5], [5.2, 1.5], [5.2, 0], [10, 0], [10, 4], [5.2, 4], [5.2, 2.5], [5, 2.5], [5, 4], [0, 4], [0, 0]]
+        [
+            [0, 0],
+            [5, 0],
+            [5, 1.5],
+            [5.2, 1.5],
+            [5.2, 0],
+            [10, 0],
+            [10, 4],
+            [5.2, 4],
+            [5.2, 2.5],
+            [5, 2.5],
+            [5, 4],
+            [0, 4],
+            [0, 0],
+        ]
     ],
 }
 
@@ -62,7 +77,7 @@ def test_run_house(call) -> None:
     pictures = sorted(files["frames"].glob("*.png"))
     assert len(pictures) == shown
     assert cv2.imread(str(pictures[-1])).shape == (720, 1280, 3)
-    assert not [p for p in files["record"].parent.rglob("*part*")]
+    assert not list(files["record"].parent.rglob("*part*"))
 
     again = call("run", "--scenario", files["scenario"], "--json", "--no-video", "--no-snapshots", "--out", "again")
     told_again = json.loads(again[1])
@@ -174,7 +189,16 @@ def test_interruption_keeps_what_was_finished(tmp_path: Path, name: str) -> None
     """A team that will not find its evader, stopped in mid-run."""
     arguments = ["run", "house", "--planner", "stationary", "--start", "7", "--evader", "still", "--evader-start", "3"]
     process = subprocess.Popen(
-        [sys.executable, "-c", "from geomsim.cli import main; main()", *arguments, "--time-limit", "100000", "--out", "out"],
+        [
+            sys.executable,
+            "-c",
+            "from geomsim.cli import main; main()",
+            *arguments,
+            "--time-limit",
+            "100000",
+            "--out",
+            "out",
+        ],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

@@ -6,6 +6,7 @@ from dataclasses import fields
 from pathlib import Path
 
 import pytest
+
 from geomsim import Decoupled, Evader, Random, Scenario, Sensor, Team, Timing, read_scenario, run_episode
 from geomsim.cli.flags import ScenarioFlags
 from geomsim.scenario import ScenarioError
@@ -24,7 +25,13 @@ def test_every_key_is_a_flag() -> None:
 def test_flags_override_the_file(tmp_path: Path) -> None:
     path = write(tmp_path, 'plan = "house"\nseed = 3\nstart = [1, 2]\ncost = "target-probability"\n')
     told = read_scenario(path, {"seed": 9, "pursuers": 3, "start": (1, 2, 3)})
-    assert (told.plan, told.seed, told.pursuers, told.start, told.cost) == ("house", 9, 3, (1, 2, 3), "target-probability")
+    assert (told.plan, told.seed, told.pursuers, told.start, told.cost) == (
+        "house",
+        9,
+        3,
+        (1, 2, 3),
+        "target-probability",
+    )
 
 
 def test_what_is_given_back_is_a_scenario_file(tmp_path: Path) -> None:
