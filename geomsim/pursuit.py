@@ -25,7 +25,7 @@ from planners import (
 )
 
 from geomsim.episode import Episode, Outcome, Status
-from geomsim.team import Evader, Team, free_cells, place_evader, place_team
+from geomsim.team import Evader, Team, place_evader, place_team
 from geomsim.walking import Routes, Walker
 from geomsim.world import World
 
@@ -203,7 +203,7 @@ class _Pursuit:
         problem = SearchProblem(graph, motion, self.sight, speeds, timing.belief_step)
         self.policy: Policy = team.planner.solve(problem, deciding)
         self.graph = graph
-        self.belief = uniform_belief(graph, free_cells(cells, starts))
+        self.belief = uniform_belief(graph, exclude=starts, component=int(graph.component[starts[0]]))
         self.plans: list[tuple[int, ...]] = [()] * team.pursuers
         self.headings = np.zeros(team.pursuers)
         self.held_up: set[int] = set()

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from discretize import CellMap, convex_cells
 from maps import FloorPlan, GeomsimError, nearest, read_plan
-from planners import MOTIONS, MotionModel, describe_planner, make_motion, make_planner
+from planners import (
+    PLANNERS,
+    AreaSpeedDegree,
+    MotionModel,
+    Planner,
+    StationaryMotion,
+    UniformMotion,
+    make_planner,
+)
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from geomsim.evaders import EVADERS, make_evader_model
@@ -23,6 +33,13 @@ __all__ = ["Scenario", "ScenarioError", "describe", "read_scenario"]
 class ScenarioError(GeomsimError):
     """A scenario that cannot be read or used; the message names the file and the key."""
 
+
+#: what a team may believe of the evader's motion, by name
+MOTIONS: dict[str, Callable[[float], MotionModel]] = {
+    "area-speed-degree": AreaSpeedDegree,
+    "uniform": lambda _: UniformMotion(),
+    "stationary": lambda _: StationaryMotion(),
+}
 
 _Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
@@ -40,8 +57,8 @@ class Scenario(BaseModel):
     pursuers: Annotated[int, Field(ge=1, le=1000)] = 2
     start: tuple[int, ...] = ()
     planner: str = "decoupled"
-    cost: str = "entropy"
-    depth: Annotated[int, Field(ge=1)] = 5
+    cost: str | None = None
+    depth: Annotated[int, Field(ge=1)] | None = None
     capture: str = "sight"
     range: Annotated[float, Field(gt=0)] = math.inf
     fov_degrees: Annotated[float, Field(gt=0, le=360)] = 360.0
@@ -97,7 +114,7 @@ class Scenario(BaseModel):
 
     def belief_motion(self) -> MotionModel:
         """Make the motion model that the pursuers believe in."""
-        return make_motion(self.motion, speed=self.evader_speed)
+        return MOTIONS[self.motion](self.evader_speed)
 
     def timing(self) -> Timing:
         """Make the clocks."""
@@ -109,10 +126,10 @@ class Scenario(BaseModel):
         return plan, convex_cells(plan, method=self.method, radius=max(self.radius, self.evader_radius))
 
     def as_dict(self) -> dict[str, Any]:
-        """Return what a scenario file would hold: plain values, without the keys that mean "none"."""
-        told = self.model_dump(mode="python")
+        """Return what a scenario file would hold: plain values, the planner's defaults told, without keys that mean "none"."""
+        told = self.model_dump(mode="python") | _planner_keys(make_planner(self.planner, cost=self.cost, depth=self.depth))
         told["start"] = list(self.start)
-        return {key: value for key, value in told.items() if value is not None and value != math.inf and value != []}
+        return _told(told)
 
     def as_toml(self) -> str:
         """Return the text of a scenario file that repeats the run."""
@@ -175,7 +192,7 @@ def describe(
     team: Team,
     evader: Evader,
     seed: int,
-    capture: Literal["sight", "cell"] | str,
+    capture: str,
     motion: MotionModel | None,
     timing: Timing,
 ) -> dict[str, Any]:
@@ -183,14 +200,14 @@ def describe(
 
     What is registered under a name is told by it; a user's own class by the class's name.
     """
-    kinds = {type(EVADERS[name]()): name for name in EVADERS}
-    motions = {type(make_motion(name)): name for name in MOTIONS}
+    kinds = {kind: name for name, kind in EVADERS.items()}
+    motions = {type(make(1.0)): name for name, make in MOTIONS.items()}
     told: dict[str, Any] = {
         "plan": plan.name if plan.source == "bundled" else plan.source or plan.name,
         "seed": seed,
         "pursuers": team.pursuers,
         "start": list(team.start),
-        **describe_planner(team.planner),
+        **_planner_keys(team.planner),
         "capture": capture,
         "range": team.sensor.range,
         "fov_degrees": math.degrees(team.sensor.field_of_view),
@@ -206,4 +223,15 @@ def describe(
         "belief_step": timing.belief_step,
         "physics_step": timing.physics_step,
     }
-    return {key: value for key, value in told.items() if value is not None and value != math.inf and value != []}
+    return _told(told)
+
+
+def _planner_keys(planner: Planner) -> dict[str, Any]:
+    """Tell a planner by its registered name, a user's own by its class's, and its parameters."""
+    names = {entry.make: name for name, entry in PLANNERS.items()}
+    told = dataclasses.asdict(planner) if dataclasses.is_dataclass(planner) else {}
+    return {"planner": names.get(type(planner), type(planner).__name__), **told}
+
+
+def _told(keys: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in keys.items() if value is not None and value != math.inf and value != []}

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from discretize import CellMap
 from maps import GeomsimError
-from numpy.typing import NDArray
 from planners import Decoupled, Planner
 
 from geomsim.evaders import CentroidBoundary, EvaderModel
@@ -126,24 +125,13 @@ def place_evader(cells: CellMap, evader: Evader, pursuers: Sequence[int], rng: n
                 f"pursuers' start cell {pursuers[0] + 1}."
             )
         return cell
-    return int(rng.choice(free_cells(cells, pursuers)))
-
-
-def free_cells(cells: CellMap, pursuers: Sequence[int]) -> NDArray[np.intp]:
-    """Return the cells, counted from 0, that the pursuers can reach and in which none of them starts.
-
-    Raises
-    ------
-    GeomsimError
-        If there are none.
-    """
     reachable = np.flatnonzero(cells.components == cells.components[pursuers[0]])
     free = reachable[~np.isin(reachable, pursuers)]
     if not len(free):
         raise GeomsimError(
             f"The pursuers start in every cell of {cells.plan.name!r} that they can reach; no cell is left for the evader."
         )
-    return free
+    return int(rng.choice(free))
 
 
 def _existing(cells: CellMap, number: int, what: str) -> int:

@@ -27,8 +27,8 @@ def planners(*, json: JsonFlag = False) -> int:
     from planners import PLANNERS
 
     if json:
-        say_json({"planners": [{"name": k, "about": e.about, "source": e.source} for k, e in PLANNERS.items()]})
+        say_json({"planners": [{"name": k, "about": e.summary, "source": e.source} for k, e in PLANNERS.items()]})
         return 0
     for name, entry in PLANNERS.items():
-        say(f"{name:<12} {entry.about} [{entry.source}]")
+        say(f"{name:<12} {entry.summary} [{entry.source}]")
     return 0
