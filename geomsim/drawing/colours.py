@@ -5,10 +5,16 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["bgr", "hex_colour", "lightness", "ramp"]
+__all__ = ["bgr", "hex_colour", "lightness", "mixed", "ramp"]
 
 # OKLab <-> linear sRGB, B. Ottosson, "A perceptual color space for image processing" (2020).
-_LAB_TO_LMS = np.array([[1, 0.3963377774, 0.2158037573], [1, -0.1055613458, -0.0638541728], [1, -0.0894841775, -1.2914855480]])
+_LAB_TO_LMS = np.array(
+    [
+        [1.0, 0.3963377774, 0.2158037573],
+        [1.0, -0.1055613458, -0.0638541728],
+        [1.0, -0.0894841775, -1.2914855480],
+    ]
+)
 _LMS_TO_RGB = np.array(
     [
         [4.0767416621, -3.3077115913, 0.2309699292],
@@ -27,6 +33,13 @@ def bgr(colour: str) -> tuple[int, int, int]:
 def hex_colour(rgb: NDArray[np.uint8]) -> str:
     """Return a colour of shape (3,) as ``#rrggbb``."""
     return "#{:02x}{:02x}{:02x}".format(*(int(c) for c in rgb))
+
+
+@cache
+def mixed(colour: str, other: str, part: float) -> str:
+    """Return a colour with a part, 0 to 1, of another one in it."""
+    pairs = zip(bgr(colour)[::-1], bgr(other)[::-1], strict=True)
+    return "#{:02x}{:02x}{:02x}".format(*(round(a + part * (b - a)) for a, b in pairs))
 
 
 def ramp(
@@ -49,13 +62,12 @@ def ramp(
         Red, green, blue.
     """
     t = np.linspace(0.0, 1.0, steps)
-    l, c, h = (a + (b - a) * t for a, b in (light, chroma, np.radians(hue)))
-    inside = np.zeros(steps, dtype=bool)
+    ls, cs, hs = (a + (b - a) * t for a, b in (light, chroma, np.radians(hue)))
     for _ in range(40):
-        rgb = _oklch_to_rgb(l, c, h)
+        rgb = _oklch_to_rgb(ls, cs, hs)
         inside = np.all((rgb > -1e-4) & (rgb < 1 + 1e-4), axis=1)
-        c = np.where(inside, c, c * 0.95)
-    return np.rint(255 * np.clip(_oklch_to_rgb(l, c, h), 0, 1)).astype(np.uint8)
+        cs = np.where(inside, cs, cs * 0.95)
+    return np.rint(255 * np.clip(_oklch_to_rgb(ls, cs, hs), 0, 1)).astype(np.uint8)
 
 
 def lightness(rgb: NDArray[np.uint8]) -> NDArray[np.float64]:
@@ -66,8 +78,8 @@ def lightness(rgb: NDArray[np.uint8]) -> NDArray[np.float64]:
     return lab[:, 0]
 
 
-def _oklch_to_rgb(l: NDArray[np.float64], c: NDArray[np.float64], h: NDArray[np.float64]) -> NDArray[np.float64]:
-    lab = np.stack([l, c * np.cos(h), c * np.sin(h)], axis=1)
+def _oklch_to_rgb(ls: NDArray[np.float64], cs: NDArray[np.float64], hs: NDArray[np.float64]) -> NDArray[np.float64]:
+    lab = np.stack([ls, cs * np.cos(hs), cs * np.sin(hs)], axis=1)
     linear = (lab @ _LAB_TO_LMS.T) ** 3 @ _LMS_TO_RGB.T
     rgb: NDArray[np.float64] = np.where(
         linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0.0031308) ** (1 / 2.4) - 0.055

@@ -7,19 +7,22 @@ from collections.abc import Callable, Iterable
 import cv2
 import numpy as np
 import shapely
-from discretize import CellMap
-from maps import FloorPlan
 from numpy.typing import NDArray
 
+from discretize import CellMap
 from geomsim.drawing.colours import bgr
 from geomsim.drawing.strokes import SHIFT, Image, fixed
 from geomsim.drawing.theme import Theme
 from geomsim.drawing.viewport import Box, Viewport
+from maps import FloorPlan
 
 __all__ = ["Floor", "inner_boundaries", "label_image"]
 
 # Static parts are drawn this many times larger and averaged, which is anti-aliasing at its best.
 _ZOOM = 4
+
+# A gap this wide between two areas is a wall and filled, metres.
+_THIN = 0.5
 
 
 class Floor:
@@ -118,15 +121,19 @@ def _cover(shape: tuple[int, int], draw: Callable[[NDArray[np.uint8]], None]) ->
     """Return the share of each pixel, 0 to 1, that is drawn on a larger mask."""
     mask = np.zeros((shape[0] * _ZOOM, shape[1] * _ZOOM), dtype=np.uint8)
     draw(mask)
-    return cv2.resize(mask, shape[::-1], interpolation=cv2.INTER_AREA).astype(np.float32) / 255
+    part: NDArray[np.float32] = cv2.resize(mask, shape[::-1], interpolation=cv2.INTER_AREA) / np.float32(255)
+    return part
 
 
 def _wall_cover(plan: FloorPlan, view: Viewport, shape: tuple[int, int], edge: float) -> NDArray[np.float32]:
-    """Walls are drawn on their outer side, so that the free space shows its true size."""
+    """Walls are drawn on their outer side, so that the free space shows its true size; thin ones are filled."""
     rings = _rings(plan.space, view.zoomed(_ZOOM))
+    closed = plan.space.buffer(_THIN / 2, join_style="mitre").buffer(-_THIN / 2, join_style="mitre")
+    thin = _rings(closed.difference(plan.space), view.zoomed(_ZOOM))
 
     def draw(mask: NDArray[np.uint8]) -> None:
         cv2.polylines(mask, rings, True, (255,), max(1, round(2 * edge * _ZOOM)), cv2.LINE_8, SHIFT)
+        cv2.fillPoly(mask, thin, (255,), cv2.LINE_8, SHIFT)
         cv2.fillPoly(mask, rings, (0,), cv2.LINE_8, SHIFT)
 
     return _cover(shape, draw)

@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geomsim.drawing.figures import Figures
 from geomsim.drawing.floor import Floor
 from geomsim.drawing.legend import draw_colour_bar, draw_scale_bar
 from geomsim.drawing.moment import Moment, Timeline, shares
 from geomsim.drawing.scale import ProbabilityScale
+from geomsim.drawing.sight import Sight
 from geomsim.drawing.strip import CaptureStrip
 from geomsim.drawing.strokes import Image, blank
 from geomsim.drawing.text import draw_text, text_width
 from geomsim.drawing.theme import DrawingError, find_theme
-from geomsim.drawing.viewport import Box
-from geomsim.drawing.visibility import Walls
+from geomsim.drawing.viewport import Box, Viewport
 from geomsim.episode import Episode
 
-__all__ = ["FrameDrawer", "FrameStyle", "draw_frame", "seen_area"]
+__all__ = ["FrameDrawer", "FrameStyle", "draw_frame"]
 
 _SMALLEST = (320, 240)
 
@@ -55,7 +53,9 @@ class FrameStyle:
 
     def __post_init__(self) -> None:
         if self.size[0] < _SMALLEST[0] or self.size[1] < _SMALLEST[1]:
-            raise DrawingError(f"A frame of {self.size[0]} x {self.size[1]} pixels is too small; 320 x 240 is the least.")
+            raise DrawingError(
+                f"A frame of {self.size[0]} x {self.size[1]} pixels is too small; 320 x 240 is the least."
+            )
         if self.evader not in ("shown", "hidden"):
             raise DrawingError(f"The evader can be 'shown' or 'hidden', not {self.evader!r}.")
         find_theme(self.theme)
@@ -101,10 +101,15 @@ class FrameDrawer:
         self._floor = Floor(episode.cells, plan_box, theme, unit)
         self._figures = Figures(self._floor.view, theme, unit)
         self._strip = CaptureStrip(episode, strip_box, theme, unit)
-        self._walls = Walls(episode.plan)
+        self._sight = Sight(episode)
         self._scale = ProbabilityScale.of(episode.beliefs)
         self._background = self._draw_background(legend_box)
         self._canvas = _Canvas()
+
+    @property
+    def view(self) -> Viewport:
+        """From metres to pixels."""
+        return self._floor.view
 
     def draw(self, time: float) -> Image:
         """Return the frame at a time in seconds, shape (height, width, 3), blue first.
@@ -117,7 +122,7 @@ class FrameDrawer:
         team = range(len(moment.pursuers))
         if style.sight:
             for r in team:
-                figures.sight(image, r, seen_area(self._walls, self.episode.scenario, moment, r))
+                figures.sight(image, r, self._sight.area(moment, r))
         if style.trails:
             for r in team:
                 figures.trail(image, r, moment.trails[r])
@@ -189,11 +194,3 @@ def draw_frame(episode: Episode, time: float, style: FrameStyle | None = None) -
         Blue first.
     """
     return FrameDrawer(episode, style).draw(time)
-
-
-def seen_area(walls: Walls, scenario: dict[str, Any], moment: Moment, pursuer: int) -> NDArray[np.float64]:
-    """Return the polygon that a pursuer sees with the sensor of the scenario, shape (k, 2), metres."""
-    sensor = scenario.get("sensor", {})
-    return walls.seen_from(
-        moment.pursuers[pursuer], sensor.get("range"), float(moment.headings[pursuer]), sensor.get("field_of_view")
-    )

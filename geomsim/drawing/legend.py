@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from geomsim.drawing.colours import hex_colour
 from geomsim.drawing.scale import ProbabilityScale, percent, round_number
 from geomsim.drawing.strokes import Image, line
-from geomsim.drawing.text import draw_text
+from geomsim.drawing.text import Align, draw_text
 from geomsim.drawing.theme import Theme
 from geomsim.drawing.viewport import Box
 
@@ -28,7 +27,7 @@ def draw_colour_bar(image: Image, box: Box, scale: ProbabilityScale, theme: Them
     for part in (0.0, 0.25, 0.5, 0.75, 1.0):
         x = box.left + part * (box.width - 1)
         line(image, np.array([[x, bottom], [x, bottom + 3 * unit]]), theme.muted, max(1, round(unit)))
-        align = "left" if part == 0 else "right" if part == 1 else "centre"
+        align: Align = "left" if part == 0 else "right" if part == 1 else "centre"
         draw_text(image, percent(scale.top * part**2), (x, bottom + 11 * unit), size, theme.muted, align)
 
 
@@ -41,8 +40,3 @@ def draw_scale_bar(image: Image, box: Box, metres_to_pixels: float, theme: Theme
     bar = np.array([[x, y - tick], [x, y + tick], [x, y], [end, y], [end, y - tick], [end, y + tick]])
     line(image, bar, theme.text, max(1, round(1.6 * unit)))
     draw_text(image, f"{length:g} m", (end + 8 * unit, y), 12 * unit, theme.text)
-
-
-def key_colour(scale: ProbabilityScale, share: float, theme: Theme) -> str:
-    """Return the colour that a probability is shown in."""
-    return hex_colour(theme.ramp[scale.steps(np.array([share]))[0]])

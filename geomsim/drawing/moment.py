@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from discretize import CellMap
 from numpy.typing import NDArray
 
+from discretize import CellMap
 from geomsim.episode import Episode
 
 __all__ = ["Moment", "Timeline", "shares"]
@@ -27,6 +28,8 @@ class Moment:
         Positions, metres.
     headings : ndarray, shape (R,)
         Radians.
+    cells : ndarray of int32, shape (R,)
+        Cell that each pursuer is in, counted from 0.
     evader : ndarray, shape (2,)
         Position, metres.
     captured : bool
@@ -42,6 +45,7 @@ class Moment:
     time: float
     pursuers: Array
     headings: Array
+    cells: NDArray[np.int32]
     evader: Array
     captured: bool
     step: int
@@ -83,9 +87,10 @@ class Timeline:
             time=time,
             pursuers=pursuers,
             headings=episode.headings[i] + part * turn,
+            cells=episode.pursuer_cells[i if part < 0.5 else j],
             evader=_between(episode.evader, i, j, part),
             captured=out.captured and time >= out.time - 1e-9,
-            step=int(max(np.searchsorted(episode.belief_times, time + 1e-9, side="right") - 1, 0)),
+            step=max(int(np.searchsorted(episode.belief_times, time + 1e-9, side="right")) - 1, 0),
             trails=tuple(self._trail_of(r, i, time, pursuers[r]) for r in range(len(pursuers))),
             routes=tuple(self._route_of(r, time, gone[r], pursuers[r]) for r in range(len(pursuers))),
         )
@@ -118,7 +123,7 @@ class Timeline:
             pursuer = episode.decision_pursuers[k]
             stops = [int(episode.pursuer_cells[i, pursuer]), *(int(c) for c in episode.decision_paths[k])]
             pieces = [episode.pursuers[i, pursuer][None]]
-            for a, b in zip(stops, stops[1:], strict=False):
+            for a, b in pairwise(stops):
                 pieces.extend(self._legs.get((a, b), (episode.cells.checkpoints[b][None],)) if a != b else ())
             self._ways[k] = np.vstack(pieces)
         return self._ways[k]

@@ -35,7 +35,8 @@ class ProbabilityScale:
 
     def steps(self, share: NDArray[np.float64]) -> NDArray[np.intp]:
         """Return the index into a ramp of 256 colours for each share."""
-        return np.rint(255 * np.sqrt(np.clip(share / self.top, 0.0, 1.0))).astype(np.intp)
+        part: NDArray[np.float64] = np.sqrt(np.clip(share / self.top, 0.0, 1.0))
+        return np.rint(255 * part).astype(np.intp)
 
 
 def round_number(value: float, *, up: bool) -> float:
@@ -56,4 +57,4 @@ def ticks(end: float, most: int) -> NDArray[np.float64]:
 def percent(share: float) -> str:
     """Return a probability as people read it: 12 %, 1.5 %, 0.02 %."""
     value = 100 * share
-    return f"{value:.3g} %" if value < 10 else f"{value:.0f} %"
+    return f"{value:.2g} %" if value < 10 else f"{value:.0f} %"

@@ -47,9 +47,9 @@ class CaptureStrip:
         title = "chance of capture by now, as the belief predicts"
         draw_text(image, title, (plot.left, plot.top - 11 * unit), 12 * unit, theme.muted)
         for value in (0.0, 0.5, 1.0):
-            ends = np.stack([self._at(np.zeros(1), np.array([value])), self._at(np.array([self._end]), np.array([value]))])
-            line(image, ends[:, 0], theme.grid, thin)
-            at = (plot.left - 7 * unit, float(ends[0, 0, 1]))
+            ends = self._at(np.array([0.0, self._end]), np.full(2, value))
+            line(image, ends, theme.grid, thin)
+            at = (plot.left - 7 * unit, float(ends[0, 1]))
             draw_text(image, f"{100 * value:.0f} %", at, 12 * unit, theme.muted, "right")
         for time in ticks(self._end, max(2, int(plot.width / (110 * unit)))):
             x, y = self._at(np.array([time]), np.zeros(1))[0]
@@ -63,8 +63,8 @@ class CaptureStrip:
         now = float(np.interp(moment.time, self._times, self._values))
         curve = self._at(np.append(self._times[:count], moment.time), np.append(self._values[:count], now))
         foot = self._at(np.array([moment.time, 0.0]), np.zeros(2))
-        tint(image, np.vstack([curve, foot]), theme.robots[4], 0.22)
-        line(image, curve, theme.robots[4], max(1, round(2 * unit)))
+        tint(image, np.vstack([curve, foot]), theme.curve, 0.22)
+        line(image, curve, theme.curve, max(1, round(2 * unit)))
         tip = curve[-1]
         if moment.captured:
             bottom, top = self._at(np.full(2, self._outcome.time), np.array([0.0, 1.0]))
@@ -72,7 +72,7 @@ class CaptureStrip:
             diamond = tip + 6 * unit * np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
             tint(image, diamond, theme.evader, 1.0)
         else:
-            disc(image, tip, 3.6 * unit, theme.robots[4])
+            disc(image, tip, 3.6 * unit, theme.curve)
         at = (float(tip[0]) + 9 * unit, float(tip[1]))
         draw_text(image, f"{100 * now:.0f} %", at, 13 * unit, theme.text, bold=True)
 

@@ -8,16 +8,22 @@ import cv2
 from geomsim.drawing.colours import bgr
 from geomsim.drawing.strokes import Image
 
-__all__ = ["draw_text", "text_width"]
+__all__ = ["Align", "draw_text", "text_width"]
 
 Align = Literal["left", "centre", "right"]
 
 # The stroke font of OpenCV 4 knows ASCII only.
-_ASCII = str.maketrans({"·": "-", "–": "-", "×": "x", "²": "2", "≥": ">"})
+_ASCII = str.maketrans({"·": "-", "\u2013": "-", "\u00d7": "x", "²": "2"})
 
 
 def draw_text(
-    image: Image, text: str, at: tuple[float, float], size: float, colour: str, align: Align = "left", bold: bool = False
+    image: Image,
+    text: str,
+    at: tuple[float, float],
+    size: float,
+    colour: str,
+    align: Align = "left",
+    bold: bool = False,
 ) -> None:
     """Draw a line of text.
 

@@ -2,13 +2,16 @@
 
 import numpy as np
 import shapely
-from maps import FloorPlan
 from numpy.typing import NDArray
+
+from maps import FloorPlan
 
 __all__ = ["Walls"]
 
 # Rays at least this close, so that a circle of sight looks round.
 _ARC_STEP = np.radians(4.0)
+
+_ALL_AROUND = 2 * np.pi - 1e-9
 
 
 class Walls:
@@ -31,7 +34,7 @@ class Walls:
         self._reach = 2.0 * float(np.hypot(x1 - x0, y1 - y0)) + 1.0
 
     def seen_from(
-        self, eye: NDArray[np.float64], reach: float | None = None, heading: float = 0.0, field: float | None = None
+        self, eye: NDArray[np.float64], reach: float = np.inf, heading: float = 0.0, field: float = 2 * np.pi
     ) -> NDArray[np.float64]:
         """Return the polygon that is seen.
 
@@ -42,20 +45,20 @@ class Walls:
         Parameters
         ----------
         eye : ndarray, shape (2,)
-            Within the free space, metres.
-        reach : float or None
-            How far it sees, metres; None: as far as there is nothing in the way.
+            Within the free space, in no corner of it, metres.
+        reach : float
+            How far it sees, metres.
         heading : float
             Middle of the field of view, radians.
-        field : float or None
-            Width of the field of view, radians; None: all around.
+        field : float
+            Width of the field of view, radians.
 
         Returns
         -------
         ndarray, shape (k, 2)
             Corners counterclockwise; a circle of sight has one every four degrees at least.
         """
-        limit = min(self._reach if reach is None else reach, self._reach)
+        limit = min(reach, self._reach)
         distance = self._normal @ eye - self._offset
         facing = distance > -1e-9
         start, end = self._start[facing] - eye, self._end[facing] - eye
@@ -85,7 +88,8 @@ class Walls:
         winner = np.full(count, -1)
         won = nearness == nearest[interval]
         winner[interval[won]] = wall[won]
-        return eye + self._outline(angles, middle, winner, slope, limit, heading, field)
+        seen: NDArray[np.float64] = eye + self._outline(angles, middle, winner, slope, limit, heading, field)
+        return seen
 
     def _extra_angles(
         self,
@@ -93,15 +97,16 @@ class Walls:
         distance: NDArray[np.float64],
         limit: float,
         heading: float,
-        field: float | None,
+        field: float,
     ) -> NDArray[np.float64]:
         """Where something begins that is no wall corner: an arc, a wall's end of range, the field of view."""
         foot = np.arctan2(normal[:, 1], normal[:, 0])
         half = np.arccos(np.clip(distance / limit, 0, 1))
         arc = np.arange(-np.pi, np.pi, _ARC_STEP)
-        edges = [] if field is None or field >= 2 * np.pi else [heading - field / 2, heading + field / 2]
+        edges = [] if field >= _ALL_AROUND else [heading - field / 2, heading + field / 2]
         extra = np.concatenate([arc, foot - half, foot + half, edges])
-        return np.arctan2(np.sin(extra), np.cos(extra))
+        turned: NDArray[np.float64] = np.arctan2(np.sin(extra), np.cos(extra))
+        return turned
 
     @staticmethod
     def _outline(
@@ -111,7 +116,7 @@ class Walls:
         slope: NDArray[np.float64],
         limit: float,
         heading: float,
-        field: float | None,
+        field: float,
     ) -> NDArray[np.float64]:
         """Join the ends of the nearest wall, or the circle of sight, in each interval."""
         following = np.append(angles[1:], angles[0])
@@ -119,10 +124,10 @@ class Walls:
         corners = []
         for angle in (angles, following):
             ray = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-            nearness = np.maximum(np.einsum("ij,ij->i", lines, ray), 1.0 / limit)
+            nearness = np.maximum(np.sum(lines * ray, axis=1), 1.0 / limit)
             corners.append(ray / nearness[:, None])
         points = np.stack(corners, axis=1)
-        if field is None or field >= 2 * np.pi:
+        if field >= _ALL_AROUND:
             return points.reshape(-1, 2)
         turned = (middle - (heading - field / 2)) % (2 * np.pi)
         order = np.argsort(turned, kind="stable")

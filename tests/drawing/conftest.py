@@ -1,10 +1,12 @@
 """A made-up episode: four rooms around a hall, two robots and an evader on fixed ways."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 import shapely
+
 from discretize import CellMap, Portal
 from geomsim.episode import Episode, Outcome, Status
 from maps import FloorPlan
@@ -42,7 +44,7 @@ def four_rooms() -> CellMap:
 def walk(cells: CellMap, stops: list[int], times: np.ndarray) -> np.ndarray:
     """Return positions at 1 m/s along the legs from checkpoint to checkpoint."""
     legs = {p.cells[::s]: (p.legs[::s][0], p.legs[::s][1][::-1]) for p in cells.portals for s in (1, -1)}
-    way = np.vstack([cells.checkpoints[stops[0]][None], *(x for a, b in zip(stops, stops[1:]) for x in legs[a, b])])
+    way = np.vstack([cells.checkpoints[stops[0]][None], *(x for a, b in pairwise(stops) for x in legs[a, b])])
     along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])
     return np.stack([np.interp(times, along, way[:, k]) for k in (0, 1)], axis=1)
 
@@ -54,13 +56,14 @@ def made_up_episode(cells: CellMap, seconds: float = 12.0) -> Episode:
     moves = np.gradient(robots, axis=0)
     headings = np.arctan2(moves[..., 1], moves[..., 0])
     belief_times = np.arange(0, seconds + 1e-9, 1.0)
-    share = np.stack([np.linspace(0.1, 0.5, len(belief_times)), *[np.linspace(0.2, 0.05, len(belief_times))] * 3], axis=1)
+    rise, fall = np.linspace(0.1, 0.5, len(belief_times)), np.linspace(0.2, 0.05, len(belief_times))
+    share = np.stack([rise, fall, fall, fall], axis=1)
     share = np.column_stack([share, 1 - share.sum(axis=1)])
     caught = np.linspace(0, 0.8, len(belief_times))
     last = float(times[-1])
     place = (float(evader[-1, 0]), float(evader[-1, 1]))
     return Episode(
-        scenario={"sensor": {"range": None, "field_of_view": None}},
+        scenario={"capture": "sight"},
         plan=cells.plan,
         cells=cells,
         times=times,
