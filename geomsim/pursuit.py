@@ -283,7 +283,7 @@ class _Pursuit:
         pursuers = tuple(
             PursuerState(walker.route.cells[1])
             if walker.done
-            else PursuerState(walker.cell, walker.route.cells[1], walker.time_left)
+            else PursuerState(walker.route.cell(walker.aim), walker.route.cells[1], walker.time_left)
             for walker in self.walkers
         )
         state = SearchState(time, self.belief, pursuers, tuple(self.plans))
