@@ -90,7 +90,9 @@ def read_record(path: Path) -> Episode:
         If there is no such file, or it is no record, damaged, or of another format.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        # opened here, since NumPy leaves a file open that turns out to be no archive
+        with path.open("rb") as stream:
+            file = np.load(stream, allow_pickle=False)
             if not isinstance(file, np.lib.npyio.NpzFile):
                 raise RecordError(f"{path} is no episode record.")
             arrays = {name: file[name] for name in file.files}

@@ -75,7 +75,7 @@ def test_run_house(call) -> None:
         assert (stream.codec_context.name, stream.codec_context.pix_fmt) == ("h264", "yuv420p")
         shown = sum(1 for _ in video.decode(stream))
     pictures = sorted(files["frames"].glob("*.png"))
-    assert len(pictures) == shown
+    assert len(pictures) == shown - 50  # the video holds its last picture for two seconds
     assert cv2.imread(str(pictures[-1])).shape == (720, 1280, 3)
     assert not list(files["record"].parent.rglob("*part*"))
 
@@ -150,8 +150,8 @@ def test_listings(call, command: str) -> None:
         (["run", "house", "--start", "12"], "numbered from 1 to 9"),
         (["run", "house", "--start", "1,2,3"], "3 start cells are given for 2 pursuers"),
         (["run", "house", "--start", "one"], "--start takes cell numbers"),
-        (["run", "house", "--radius", "0.6"], "0.6"),
-        (["run", "house", "--capture", "smell"], "choose one of 'sight', 'cell'"),
+        (["run", "house", "--radius", "0.6"], "fits through no door"),
+        (["run", "house", "--capture", "smell"], "did you mean 'cell'?"),
         (["run", "house", "--pursuers", "0"], "--pursuers"),
         (["run", "house", "--pursuers", "many"], "--pursuers"),
         (["run", "house", "--seeed", "1"], "--seed"),
