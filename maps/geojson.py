@@ -141,7 +141,7 @@ def parse_geometry(data: object, at: str) -> BaseGeometry:
         raise PlanError(f"{at} has the geometry type {kind!r}; {nearest(str(kind), GEOMETRIES)}")
     try:
         return shapely.force_2d(shapely.from_geojson(json.dumps(_closed(data))))
-    except (shapely.GEOSException, ValueError, TypeError) as exc:
+    except (shapely.GEOSException, KeyError, ValueError, TypeError) as exc:
         raise PlanError(f"{at} is a {kind} whose coordinates are not as GeoJSON says.") from exc
 
 
@@ -176,7 +176,7 @@ def _frame(
 
 
 def _polygonal(geometry: BaseGeometry, at: str, kind: str) -> BaseGeometry:
-    if geometry.geom_type not in ("Polygon", "MultiPolygon"):
+    if geometry.geom_type not in ("Polygon", "MultiPolygon", "GeometryCollection"):
         raise PlanError(f"{at} is a {geometry.geom_type} of kind {kind!r}; free space is made of polygons.")
     return geometry
 

@@ -148,13 +148,22 @@ def _mend(polygon: shapely.Polygon, done: list[Repair]) -> BaseGeometry:
         message = f"A broken ring ({reason.lower()} at ({at})) was mended; it now holds {valid.area:.3g} square metres."
         done.append(Repair("mended ring", message, polygon.boundary))
     snapped = shapely.set_precision(valid, GRID)
-    tidy = shapely.get_num_coordinates(shapely.remove_repeated_points(valid, GRID))
-    if broken or shapely.get_num_coordinates(snapped) < tidy:
-        lost = shapely.difference(polygon.boundary, shapely.buffer(snapped.boundary, 3 * GRID, quad_segs=2))
-        if lost.length > 10 * GRID:
+    if broken or shapely.get_num_coordinates(snapped) < shapely.get_num_coordinates(valid):
+        lost = _lost_edges(polygon, snapped)
+        if not lost.is_empty:
             message = f"{lost.length:.3g} m of walls or crevices thinner than a millimetre {_near(lost)} were removed."
             done.append(Repair("removed spike", message, lost))
     return snapped
+
+
+def _lost_edges(polygon: shapely.Polygon, snapped: BaseGeometry) -> shapely.MultiLineString:
+    """Find the edges of a polygon that have an end of which nothing is left after snapping."""
+    xy, ring = shapely.get_coordinates(shapely.get_rings(polygon), return_index=True)
+    boundary = snapped.boundary
+    shapely.prepare(boundary)
+    gone = ~np.asarray(shapely.dwithin(boundary, shapely.points(xy), 3 * GRID))
+    lost = (gone[1:] | gone[:-1]) & (ring[1:] == ring[:-1]) & (xy[1:] != xy[:-1]).any(axis=1)
+    return shapely.MultiLineString(list(np.stack([xy[:-1][lost], xy[1:][lost]], axis=1)))
 
 
 def _without_needles(free: BaseGeometry, done: list[Repair]) -> BaseGeometry:

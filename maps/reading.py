@@ -9,6 +9,7 @@ from pathlib import Path
 from maps.errors import PlanError, nearest
 from maps.floorplan import FloorPlan
 from maps.geojson import read_geojson
+from maps.ros import read_ros
 
 __all__ = ["bundled_names", "read_plan"]
 
@@ -17,6 +18,8 @@ Reader = Callable[[Path], FloorPlan]
 READERS: dict[str, Reader] = {
     ".geojson": read_geojson,
     ".json": read_geojson,
+    ".yaml": read_ros,
+    ".yml": read_ros,
 }
 """The reader for each suffix; a new format joins by a line here."""
 
@@ -46,6 +49,8 @@ def read_plan(name_or_path: str | Path) -> FloorPlan:
             return read_geojson(file, source="bundled")
     path = Path(name_or_path)
     suffix = path.suffix.lower()
+    if not given.strip():
+        raise PlanError("The name of the floor plan is empty.")
     if path.is_dir():
         raise PlanError(f"{given} is a folder; a floor plan is a file.")
     if not path.exists():
