@@ -19,16 +19,15 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from discretize import CellMap, Portal, check_cells, convex_cells
-    from maps import FloorPlan, GeomsimError
-    from maps import read_plan as load_plan
-    from planners import Decoupled, Random, SearchGraph, Stationary
-
     from geomsim.episode import Episode, Outcome, Status
     from geomsim.evaders import CentroidBoundary, Still
     from geomsim.pursuit import Timing, run_episode
     from geomsim.scenario import Scenario, read_scenario
     from geomsim.sensing import Sensor
     from geomsim.team import Evader, Team
+    from maps import FloorPlan, GeomsimError
+    from maps import read_plan as load_plan
+    from planners import Decoupled, Random, SearchGraph, Stationary
 
 __all__ = [
     "CellMap",

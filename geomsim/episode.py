@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
 from discretize import CellMap
 from maps import FloorPlan
-from numpy.typing import NDArray
 
 __all__ = ["Episode", "Outcome", "Status"]
 

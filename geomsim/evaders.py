@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from maps import GeomsimError, nearest
 
 from geomsim.walking import Route, Routes
+from maps import GeomsimError, nearest
 
 __all__ = ["EVADERS", "CentroidBoundary", "EvaderModel", "Still", "make_evader_model"]
 

@@ -8,9 +8,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from discretize import CellMap
-from maps import FloorPlan, GeomsimError, nearest
 from numpy.typing import NDArray
+
+from discretize import CellMap
+from geomsim.episode import Episode, Outcome, Status
+from geomsim.team import Evader, Team, place_evader, place_team
+from geomsim.walking import Routes, Walker
+from geomsim.world import World
+from maps import FloorPlan, GeomsimError, nearest
 from planners import (
     AreaSpeedDegree,
     MotionModel,
@@ -23,11 +28,6 @@ from planners import (
     advance,
     uniform_belief,
 )
-
-from geomsim.episode import Episode, Outcome, Status
-from geomsim.team import Evader, Team, place_evader, place_team
-from geomsim.walking import Routes, Walker
-from geomsim.world import World
 
 __all__ = ["CAPTURE_RULES", "Timing", "run_episode"]
 
@@ -62,7 +62,9 @@ class Timing:
         for name in ("limit", "belief_step", "physics_step"):
             value = getattr(self, name)
             if not 0 < value < math.inf:
-                raise GeomsimError(f"The time {name.replace('_', ' ')} must be positive and finite, but is {value:g} s.")
+                raise GeomsimError(
+                    f"The time {name.replace('_', ' ')} must be positive and finite, but is {value:g} s."
+                )
         ratio = self.belief_step / self.physics_step
         if ratio < 1 or abs(ratio - round(ratio)) > 1e-6:
             raise GeomsimError(
@@ -118,7 +120,7 @@ def run_episode(
     Raises
     ------
     GeomsimError
-        If the team cannot be placed, a body is too large for the routes of ``cells``, or the policy breaks its contract.
+        If the team cannot be placed, a body is too large for the routes of ``cells``, or a policy breaks its contract.
     """
     team, evader, timing = team or Team(), evader or Evader(), timing or Timing()
     if capture not in CAPTURE_RULES:
@@ -126,7 +128,7 @@ def run_episode(
     for who, radius in (("pursuer", team.radius), ("evader", evader.radius)):
         if radius > cells.radius + 1e-9:
             raise GeomsimError(
-                f"The {who}'s radius, {radius:g} m, is larger than the {cells.radius:g} m for which the cells were made."
+                f"The {who}'s radius, {radius:g} m, is larger than the {cells.radius:g} m that the cells were made for."
             )
     pursuit = _Pursuit(plan, cells, team, evader, seed, capture, motion or AreaSpeedDegree(), timing)
     outcome = pursuit.run(progress)
@@ -281,7 +283,7 @@ class _Pursuit:
         pursuers = tuple(
             PursuerState(walker.route.cells[1])
             if walker.done
-            else PursuerState(walker.cell, walker.route.cells[1], walker.time_left)
+            else PursuerState(walker.route.cell(walker.aim), walker.route.cells[1], walker.time_left)
             for walker in self.walkers
         )
         state = SearchState(time, self.belief, pursuers, tuple(self.plans))

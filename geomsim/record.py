@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import zipfile
 import zlib
@@ -11,12 +12,12 @@ from typing import Any
 
 import numpy as np
 import shapely
-from discretize import CellMap, Portal
-from maps import FloorPlan, GeomsimError, Label, Repair
 from numpy.typing import NDArray
 
+from discretize import CellMap, Portal
 from geomsim.episode import Episode, Outcome, Status
 from geomsim.files import replacing
+from maps import FloorPlan, GeomsimError, Label, Repair
 
 __all__ = ["FORMAT", "RecordError", "read_record", "write_record"]
 
@@ -89,7 +90,9 @@ def read_record(path: Path) -> Episode:
         If there is no such file, or it is no record, damaged, or of another format.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        # opened here, since NumPy leaves a file open that turns out to be no archive
+        with path.open("rb") as stream:
+            file = np.load(stream, allow_pickle=False)
             if not isinstance(file, np.lib.npyio.NpzFile):
                 raise RecordError(f"{path} is no episode record.")
             arrays = {name: file[name] for name in file.files}
@@ -169,7 +172,7 @@ def _join(rows: Sequence[NDArray[Any]], dtype: np.dtype[Any]) -> tuple[NDArray[A
 
 
 def _split(joined: NDArray[Any], splits: NDArray[np.int64]) -> tuple[NDArray[Any], ...]:
-    return tuple(joined[a:b] for a, b in zip(splits[:-1], splits[1:], strict=True))
+    return tuple(joined[a:b] for a, b in itertools.pairwise(splits))
 
 
 def _wkb(geometries: Sequence[shapely.Geometry]) -> NDArray[np.uint8]:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
 from discretize import CellMap, convex_cells
+from geomsim.evaders import EVADERS, make_evader_model
+from geomsim.pursuit import CAPTURE_RULES, Timing
+from geomsim.sensing import Sensor
+from geomsim.team import Evader, Team
 from maps import FloorPlan, GeomsimError, nearest, read_plan
 from planners import (
     PLANNERS,
@@ -20,12 +25,6 @@ from planners import (
     UniformMotion,
     make_planner,
 )
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
-
-from geomsim.evaders import EVADERS, make_evader_model
-from geomsim.pursuit import CAPTURE_RULES, Timing
-from geomsim.sensing import Sensor
-from geomsim.team import Evader, Team
 
 __all__ = ["Scenario", "ScenarioError", "describe", "read_scenario"]
 
@@ -87,7 +86,8 @@ class Scenario(BaseModel):
     @field_validator("capture", "evader", "motion")
     @classmethod
     def _known(cls, value: str, info: Any) -> str:
-        valid = {"capture": CAPTURE_RULES, "evader": EVADERS, "motion": MOTIONS}[info.field_name]
+        known: dict[str, Iterable[str]] = {"capture": CAPTURE_RULES, "evader": EVADERS, "motion": MOTIONS}
+        valid = tuple(known[info.field_name])
         if value not in valid:
             raise ValueError(f"is not {value!r}: {nearest(value, valid)}")
         return value
@@ -126,8 +126,10 @@ class Scenario(BaseModel):
         return plan, convex_cells(plan, method=self.method, radius=max(self.radius, self.evader_radius))
 
     def as_dict(self) -> dict[str, Any]:
-        """Return what a scenario file would hold: plain values, the planner's defaults told, without keys that mean "none"."""
-        told = self.model_dump(mode="python") | _planner_keys(make_planner(self.planner, cost=self.cost, depth=self.depth))
+        """Return what a scenario file would hold: plain values, a planner's defaults told, no keys that mean "none"."""
+        told = self.model_dump(mode="python") | _planner_keys(
+            make_planner(self.planner, cost=self.cost, depth=self.depth)
+        )
         told["start"] = list(self.start)
         return _told(told)
 
@@ -200,7 +202,7 @@ def describe(
 
     What is registered under a name is told by it; a user's own class by the class's name.
     """
-    kinds = {kind: name for name, kind in EVADERS.items()}
+    kinds: dict[type, str] = {kind: name for name, kind in EVADERS.items()}
     motions = {type(make(1.0)): name for name, make in MOTIONS.items()}
     told: dict[str, Any] = {
         "plan": plan.name if plan.source == "bundled" else plan.source or plan.name,
@@ -229,7 +231,7 @@ def describe(
 def _planner_keys(planner: Planner) -> dict[str, Any]:
     """Tell a planner by its registered name, a user's own by its class's, and its parameters."""
     names = {entry.make: name for name, entry in PLANNERS.items()}
-    told = dataclasses.asdict(planner) if dataclasses.is_dataclass(planner) else {}
+    told = {key: getattr(planner, key) for key in getattr(planner, "__dataclass_fields__", ())}
     return {"planner": names.get(type(planner), type(planner).__name__), **told}
 
 

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from maps import GeomsimError
 from numpy.typing import NDArray
 
 from geomsim.world import World
+from maps import GeomsimError
 
 __all__ = ["Sensor"]
 
@@ -37,9 +37,7 @@ class Sensor:
                 f"A field of view must be above 0 and at most 360 degrees, but is {math.degrees(self.field_of_view):g}."
             )
 
-    def sees(
-        self, world: World, eye: NDArray[np.float64], heading: float, target: NDArray[np.float64]
-    ) -> bool:
+    def sees(self, world: World, eye: NDArray[np.float64], heading: float, target: NDArray[np.float64]) -> bool:
         """Whether a robot at ``eye`` that looks along ``heading`` (radians) sees the point ``target``."""
         dx, dy = (target - eye).tolist()
         if math.hypot(dx, dy) > self.range:

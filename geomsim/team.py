@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from discretize import CellMap
-from maps import GeomsimError
-from planners import Decoupled, Planner
 
+from discretize import CellMap
 from geomsim.evaders import CentroidBoundary, EvaderModel
 from geomsim.sensing import Sensor
+from maps import GeomsimError
+from planners import Decoupled, Planner
 
 __all__ = ["Evader", "Team", "place_evader", "place_team"]
 
@@ -42,7 +42,7 @@ class Team:
     start: tuple[int, ...] = ()
     speed: float = 1.0
     radius: float = 0.2
-    sensor: Sensor = Sensor()
+    sensor: Sensor = field(default_factory=Sensor)
 
     def __post_init__(self) -> None:
         if self.pursuers < 1:
@@ -67,7 +67,7 @@ class Evader:
         Of its body, metres.
     """
 
-    model: EvaderModel = CentroidBoundary()
+    model: EvaderModel = field(default_factory=CentroidBoundary)
     start: int | None = None
     speed: float = 1.0
     radius: float = 0.2
@@ -129,7 +129,8 @@ def place_evader(cells: CellMap, evader: Evader, pursuers: Sequence[int], rng: n
     free = reachable[~np.isin(reachable, pursuers)]
     if not len(free):
         raise GeomsimError(
-            f"The pursuers start in every cell of {cells.plan.name!r} that they can reach; no cell is left for the evader."
+            f"The pursuers start in every cell of {cells.plan.name!r} that they can reach; "
+            "no cell is left for the evader."
         )
     return int(rng.choice(free))
 

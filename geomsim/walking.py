@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from discretize import CellMap
 from numpy.typing import NDArray
+
+from discretize import CellMap
 
 __all__ = ["Route", "Routes", "Walker"]
 
@@ -94,8 +95,8 @@ class Walker:
         The route that the aim is on.
     aim : float
         Way of the aim along the route, metres.
-    pipeline : list of (point, cell)
-        Where the body should be now, one step and two steps from now.
+    ahead : list of (point, cell)
+        Where the body should be now and one step from now.
     idle : float
         Seconds since the aim last moved; it waits while a body is held up.
     """
@@ -103,7 +104,7 @@ class Walker:
     speed: float
     route: Route
     aim: float = 0.0
-    pipeline: list[tuple[NDArray[np.float64], int]] = field(default_factory=list)
+    ahead: list[tuple[NDArray[np.float64], int]] = field(default_factory=list)
     idle: float = 0.0
 
     #: a body further than this from where it should be is waited for, metres
@@ -111,12 +112,12 @@ class Walker:
 
     def __post_init__(self) -> None:
         start = (self.route.points[0], self.route.cells[0])
-        self.pipeline = [start, start, start]
+        self.ahead = [start, start]
 
     @property
     def cell(self) -> int:
         """The cell in which the body is, counted from 0."""
-        return self.pipeline[0][1]
+        return self.ahead[0][1]
 
     @property
     def done(self) -> bool:
@@ -135,7 +136,7 @@ class Walker:
 
     def advance(self, position: NDArray[np.float64], velocity: NDArray[np.float64], dt: float) -> None:
         """Move the aim on by one step, unless the body is held up."""
-        behind = np.hypot(*(position + velocity * dt - self.pipeline[1][0]))
+        behind = np.hypot(*(position + velocity * dt - self.ahead[1][0]))
         if behind <= self.PATIENCE:
             self.aim += self.speed * dt
             self.idle = 0.0
@@ -143,9 +144,11 @@ class Walker:
             self.idle += dt
 
     def wanted(self, position: NDArray[np.float64], velocity: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
-        """Return the velocity that brings the body to the aim, at most its speed; shape (2,), metres a second."""
-        self.pipeline = [*self.pipeline[1:], (self.route.at(self.aim), self.route.cell(self.aim))]
-        velocity = (self.pipeline[-1][0] - (position + velocity * dt)) / dt
+        """Return the velocity that brings the body to the aim, at most its speed; shape (2,), metres a second.
+
+        To be asked once a step, after :meth:`advance` and before the world's step.
+        """
+        self.ahead = [self.ahead[1], (self.route.at(self.aim), self.route.cell(self.aim))]
+        velocity = (self.ahead[1][0] - (position + velocity * dt)) / dt
         fast = float(np.hypot(*velocity))
         return velocity if fast <= self.speed else velocity * (self.speed / fast)
-

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from discretize import CellMap, convex_cells
 from geomsim import Episode, Team, run_episode
 from maps import read_plan

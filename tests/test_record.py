@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from geomsim import Episode
 from geomsim.files import OutputError
 from geomsim.record import FORMAT, RecordError

@@ -1,7 +1,10 @@
 """Bodies go along routes at exactly their speed."""
 
+import itertools
+
 import numpy as np
 import pytest
+
 from discretize import CellMap
 from geomsim.walking import Routes, Walker
 from geomsim.world import World
@@ -34,7 +37,7 @@ def test_a_walker_keeps_its_speed(house: CellMap, speed: float, dt: float) -> No
     """Round the house by 1-4-9-2-8-1: at every time the body is where a point at that speed would be."""
     routes = Routes(house)
     tour = [0, 3, 8, 1, 7, 0]
-    legs = [routes.between(a, b) for a, b in zip(tour[:-1], tour[1:], strict=True)]
+    legs = [routes.between(a, b) for a, b in itertools.pairwise(tour)]
     walker = Walker(speed, routes.stay(0, 0.0))
     world = World(house.plan.walls, house.checkpoints[:1], np.array([0.2]))
     ends = np.cumsum([leg.length for leg in legs])

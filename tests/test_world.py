@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+
 from geomsim.sensing import Sensor
 from geomsim.world import World, count_wall_crossings
 from maps import FloorPlan, GeomsimError, read_plan
@@ -137,7 +138,9 @@ def test_sight_agrees_with_shapely() -> None:
     assert [world.sees(p, q) for p, q in zip(a, b, strict=True)] == expected.tolist()
 
 
-@pytest.mark.parametrize("sensor", [{"range": 0.0}, {"range": math.nan}, {"field_of_view": 0.0}, {"field_of_view": 7.0}])
+@pytest.mark.parametrize(
+    "sensor", [{"range": 0.0}, {"range": math.nan}, {"field_of_view": 0.0}, {"field_of_view": 7.0}]
+)
 def test_a_useless_sensor_is_refused(sensor: dict[str, float]) -> None:
     with pytest.raises(GeomsimError):
         Sensor(**sensor)

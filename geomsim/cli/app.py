@@ -23,7 +23,11 @@ app = App(
 )
 # a name of a module and a function in it: a command's code is imported when the command is called
 app.command("geomsim.cli.run:run", name="run", help="One pursuit: record, video, snapshots.")
-app.command("geomsim.cli.discretize:discretize", name="discretize", help="A floor plan cut into cells: GeoJSON, picture, report.")
+app.command(
+    "geomsim.cli.discretize:discretize",
+    name="discretize",
+    help="A floor plan cut into cells: GeoJSON, picture, report.",
+)
 app.command("geomsim.cli.render:render", name="render", help="Pictures and video from a saved episode.")
 app.command("geomsim.cli.listing:maps", name="maps", help="The bundled floor plans.")
 app.command("geomsim.cli.listing:planners", name="planners", help="The planners, each with its source.")

@@ -33,9 +33,8 @@ def discretize(
     from json import dumps
 
     from discretize import check_cells, convex_cells, write_cells
-    from maps import read_plan
-
     from geomsim.files import output_folder, replacing, write_text
+    from maps import read_plan
 
     begun = time.perf_counter()
     place = read_plan(plan)
@@ -72,7 +71,7 @@ def discretize(
         say_json(result)
         return 0
     say(f"{place.name}: {len(cells)} cells, {len(cells.portals)} portals, {report.area:.1f} m2, {seconds:.2f} s")
-    say(f"covered {report.coverage:.9f}, overlap {report.overlap:.1e}, smallest cell area / hull area {report.convexity:.6f}")
+    say(f"covered {report.coverage:.9f}, overlap {report.overlap:.1e}, least convexity {report.convexity:.6f}")
     say(f"connected parts of the free space: {report.free_components}, of the cell graph: {report.graph_components}")
     for sentence in (*report.problems, *result["repairs"]):
         say(f"  {sentence}")

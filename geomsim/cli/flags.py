@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Parameter
+
 from maps import GeomsimError
 
 __all__ = ["JsonFlag", "OutFlag", "ScenarioFlags"]
@@ -92,5 +93,7 @@ class ScenarioFlags:
             try:
                 told["start"] = tuple(int(part) for part in self.start.split(","))
             except ValueError:
-                raise GeomsimError(f"--start takes cell numbers with commas between them, not {self.start!r}.") from None
+                raise GeomsimError(
+                    f"--start takes cell numbers with commas between them, not {self.start!r}."
+                ) from None
         return {key: value for key, value in told.items() if value is not None}
