@@ -94,7 +94,7 @@ def draw_snapshots(
 
     scale = ProbabilityScale.of(episode.beliefs)
     box = Box(0, 0, panel_width, panel_height)
-    floor = Floor(episode.cells, box, colours, unit)
+    floor = Floor(episode.cells, box, colours, 0.8 * unit, portals=False)
     figures = Figures(floor.view, colours, 0.85 * unit)
     timeline = Timeline(episode)
     for k, time in enumerate(chosen):

@@ -34,11 +34,10 @@ class Figures:
         self._thin = max(1, round(1.2 * unit))
 
     def sight(self, image: Image, number: int, area: Array) -> None:
-        """Draw the area that a robot sees, shape (k, 2), metres: lit from there, with a fine outline."""
+        """Draw the area that a robot sees, shape (k, 2), metres: lit from there."""
         pixels = self._view.pixels(area)
         colour = self._theme.robot(number)
-        tint(image, pixels, mixed(colour, self._theme.light, 0.6), 0.3)
-        line(image, pixels, mixed(colour, self._theme.light, 0.35), self._thin, closed=True)
+        tint(image, pixels, mixed(colour, self._theme.light, 0.5), 0.38)
 
     def trail(self, image: Image, number: int, path: Array) -> None:
         """Draw where a robot has come from, thinner the longer ago."""
@@ -55,8 +54,10 @@ class Figures:
             return
         pixels = self._view.pixels(path)
         colour = self._theme.robot(number)
-        for dash in dashes(pixels, 7.0 * self._unit, 5.0 * self._unit):
-            line(image, dash, colour, max(1, round(1.6 * self._unit)))
+        left = float(np.hypot(*np.diff(pixels, axis=0).T).sum())
+        dash, gap = 7.0 * self._unit, 5.0 * self._unit
+        # Counted from the far end, dashes stand still while the robot moves.
+        dashes(image, pixels, colour, max(1, round(1.6 * self._unit)), dash=dash, gap=gap, shift=-left)
         disc(image, pixels[-1], 4.5 * self._unit, colour)
         disc(image, pixels[-1], 2.6 * self._unit, self._theme.casing)
 

@@ -45,7 +45,7 @@ class Floor:
     ----------
     view : Viewport
         From metres to pixels of the whole image.
-    labels : ndarray of int32, shape (box.height, box.width)
+    labels : ndarray of intp, shape (box.height, box.width)
         Number of the cell, from 1, at each pixel of the box; 0 where there is none.
     """
 
@@ -68,7 +68,8 @@ class Floor:
         shape = (box.height, box.width)
         self.labels = label_image(cells, local, shape)
 
-        wall = _wall_cover(cells.plan, local, shape, edge)
+        wall = _wall_cover(cells.plan, local, shape, edge, 1.1 * unit)
+        self._is_wall = (wall > 0.5).astype(np.uint8)
         layers = [(wall, theme.wall)]
         if boundaries:
             layers.insert(0, (_dot_cover(cells, local, shape, unit), theme.dots))
@@ -95,13 +96,19 @@ class Floor:
         flat[self._where] = flat[self._where] * self._keep + self._add + 0.5
         image[self.box.slices] = part
 
+    def restore_walls(self, image: Image, painted: Image) -> None:
+        """Copy the walls from a painted image to one on which something was drawn over them."""
+        cv2.copyTo(painted[self.box.slices], self._is_wall, image[self.box.slices])
 
-def label_image(cells: CellMap, view: Viewport, shape: tuple[int, int]) -> NDArray[np.int32]:
+
+def label_image(cells: CellMap, view: Viewport, shape: tuple[int, int]) -> NDArray[np.intp]:
     """Return the number of the cell, from 1, at each pixel, 0 where there is none."""
     labels = np.zeros(shape, dtype=np.int32)
     for number, cell in enumerate(cells.cells, start=1):
         cv2.fillPoly(labels, _rings(cell, view), (number,), cv2.LINE_8, SHIFT)
-    return labels
+    # Rounding leaves a pixel here and there between two cells; walls cover what grows over the edge of the plan.
+    grown = cv2.dilate(labels.astype(np.float32), np.ones((3, 3), np.uint8))
+    return np.where(labels == 0, grown, labels).astype(np.intp)
 
 
 def inner_boundaries(cells: CellMap) -> list[NDArray[np.float64]]:
@@ -125,8 +132,10 @@ def _cover(shape: tuple[int, int], draw: Callable[[NDArray[np.uint8]], None]) ->
     return part
 
 
-def _wall_cover(plan: FloorPlan, view: Viewport, shape: tuple[int, int], edge: float) -> NDArray[np.float32]:
-    """Walls are drawn on their outer side, so that the free space shows its true size; thin ones are filled."""
+def _wall_cover(
+    plan: FloorPlan, view: Viewport, shape: tuple[int, int], edge: float, inner: float
+) -> NDArray[np.float32]:
+    """Walls are drawn mostly on their outer side, so that the free space shows its size; thin ones are filled."""
     rings = _rings(plan.space, view.zoomed(_ZOOM))
     closed = plan.space.buffer(_THIN / 2, join_style="mitre").buffer(-_THIN / 2, join_style="mitre")
     thin = _rings(closed.difference(plan.space), view.zoomed(_ZOOM))
@@ -135,6 +144,8 @@ def _wall_cover(plan: FloorPlan, view: Viewport, shape: tuple[int, int], edge: f
         cv2.polylines(mask, rings, True, (255,), max(1, round(2 * edge * _ZOOM)), cv2.LINE_8, SHIFT)
         cv2.fillPoly(mask, thin, (255,), cv2.LINE_8, SHIFT)
         cv2.fillPoly(mask, rings, (0,), cv2.LINE_8, SHIFT)
+        # What is left of a wall of no thickness:
+        cv2.polylines(mask, rings, True, (255,), max(1, round(2 * inner * _ZOOM)), cv2.LINE_8, SHIFT)
 
     return _cover(shape, draw)
 
@@ -147,7 +158,7 @@ def _dot_cover(cells: CellMap, view: Viewport, shape: tuple[int, int], unit: flo
 
 def _portal_cover(cells: CellMap, view: Viewport, shape: tuple[int, int], unit: float) -> NDArray[np.float32]:
     points = [view.zoomed(_ZOOM).pixels(portal.point)[None] for portal in cells.portals]
-    return _discs(shape, points, 2.0 * unit * _ZOOM)
+    return _discs(shape, points, 1.7 * unit * _ZOOM)
 
 
 def _discs(shape: tuple[int, int], centres: Iterable[NDArray[np.float64]], radius: float) -> NDArray[np.float32]:

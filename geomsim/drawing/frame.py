@@ -117,12 +117,14 @@ class FrameDrawer:
         A time before the start or after the end of the episode shows its first or last moment.
         """
         moment = self._timeline.at(time)
-        image = self._painted_floor(moment.step).copy()
+        painted = self._painted_floor(moment.step)
+        image = painted.copy()
         figures, style = self._figures, self.style
         team = range(len(moment.pursuers))
         if style.sight:
             for r in team:
                 figures.sight(image, r, self._sight.area(moment, r))
+            self._floor.restore_walls(image, painted)
         if style.trails:
             for r in team:
                 figures.trail(image, r, moment.trails[r])

@@ -56,26 +56,34 @@ def tint(image: Image, pixels: NDArray[np.float64], colour: str, opacity: float)
     cv2.addWeighted(layer, opacity, part, 1.0 - opacity, 0.0, dst=part)
 
 
-def dashes(path: NDArray[np.float64], dash: float, gap: float) -> list[NDArray[np.float64]]:
-    """Cut a polyline into dashes.
+def dashes(
+    image: Image, pixels: NDArray[np.float64], colour: str, width: int, *, dash: float, gap: float, shift: float = 0.0
+) -> None:
+    """Draw a polyline in dashes.
 
     Parameters
     ----------
-    path : ndarray, shape (k, 2)
-        Pixels.
+    image : ndarray of uint8, shape (height, width, 3)
+        Drawn on.
+    pixels : ndarray, shape (k, 2)
+        The path.
+    colour : str
+        ``#rrggbb``.
+    width : int
+        Of the line, pixels.
     dash, gap : float
         Lengths, pixels.
-
-    Returns
-    -------
-    list of ndarray, each of shape (m, 2)
-        The dashes, corners of the path kept.
+    shift : float
+        How much of the first dash has been drawn already, pixels; so dashes stand still while a path is eaten up.
     """
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
-    pieces = []
-    for start in np.arange(0.0, along[-1], dash + gap):
-        ends = np.array([start, min(start + dash, along[-1])])
-        inner = path[(along > ends[0]) & (along < ends[1])]
-        first, last = np.stack([np.interp(ends, along, path[:, 0]), np.interp(ends, along, path[:, 1])], axis=1)
-        pieces.append(np.vstack([first, inner, last]))
-    return pieces
+    if len(pixels) < 2:
+        return
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(pixels, axis=0).T))])
+    period = dash + gap
+    starts = np.arange(-(shift % period), along[-1], period)
+    cuts = np.unique(np.clip(np.concatenate([along, starts, starts + dash]), 0.0, along[-1]))
+    middle = (cuts[1:] + cuts[:-1]) / 2
+    drawn = (middle + shift) % period < dash
+    corners = fixed(np.stack([np.interp(cuts, along, pixels[:, 0]), np.interp(cuts, along, pixels[:, 1])], axis=1))
+    pieces = np.stack([corners[:-1], corners[1:]], axis=1)[drawn]
+    cv2.polylines(image, list(pieces), False, bgr(colour), width, cv2.LINE_AA, SHIFT)
