@@ -110,7 +110,7 @@ def count_wall_crossings(track: NDArray[np.float64], walls: NDArray[np.float64])
     walls : ndarray, shape (W, 2, 2)
         Wall segments, metres.
     """
-    tree = shapely.STRtree(list(shapely.linestrings(walls)))
+    tree = shapely.STRtree([shapely.LineString(wall) for wall in walls])
     moves = np.stack([track[:-1], track[1:]], axis=2).reshape(-1, 2, 2)
     moves = moves[np.any(moves[:, 0] != moves[:, 1], axis=1)]
     which, _ = tree.query(shapely.linestrings(moves), predicate="intersects")

@@ -73,7 +73,7 @@ def discretize(
     say(f"{place.name}: {len(cells)} cells, {len(cells.portals)} portals, {report.area:.1f} m2, {seconds:.2f} s")
     say(f"covered {report.coverage:.9f}, overlap {report.overlap:.1e}, least convexity {report.convexity:.6f}")
     say(f"connected parts of the free space: {report.free_components}, of the cell graph: {report.graph_components}")
-    for sentence in (*report.problems, *result["repairs"]):
+    for sentence in (*report.problems, *(repair.message for repair in place.repairs)):
         say(f"  {sentence}")
     for kind, path in files.items():
         say(f"{kind + ':':<10} {path}")
