@@ -65,6 +65,8 @@ class FloorPlan:
         Door segments that the source has, each with two points, from jamb to jamb.
     labels : tuple of Label
         Names and numbers of rooms that the source has.
+    start : tuple of int
+        Numbers of the cells in which a team starts unless told otherwise, from 1; empty where the source has none.
     source : str
         Where it came from: a file, or "bundled".
     repairs : tuple of Repair
@@ -75,6 +77,7 @@ class FloorPlan:
     space: FreeSpace
     doors: tuple[shapely.LineString, ...] = ()
     labels: tuple[Label, ...] = ()
+    start: tuple[int, ...] = ()
     source: str = ""
     repairs: tuple[Repair, ...] = field(default=())
 
