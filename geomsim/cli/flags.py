@@ -41,12 +41,14 @@ class ScenarioFlags:
         How far a robot sees, metres.
     fov_degrees
         Field of view of a robot, degrees.
+    detection
+        Probability that a robot notices, within a second, an evader that stays in view.
     speed
         Speed of the robots, metres a second.
     radius
         Radius of the robots, metres.
     evader
-        How the evader moves: centroid-boundary or still.
+        How the evader moves: centroid-boundary, still, shortest-paths, hiding or fleeing.
     evader_start
         Number of the cell in which it starts.
     evader_speed
@@ -74,6 +76,7 @@ class ScenarioFlags:
     capture: str | None = None
     range: float | None = None
     fov_degrees: float | None = None
+    detection: float | None = None
     speed: float | None = None
     radius: float | None = None
     evader: str | None = None
