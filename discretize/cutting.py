@@ -77,10 +77,11 @@ def connect_cells(
     checkpoints = find_checkpoints(cells, ways)
     portals = find_portals(cells, checkpoints, ways)
     closed = len(blocked_doors(plan, portals)) == len(plan.doors) > 0
-    if closed or (len(cells) > 1 and not portals):
+    widest = 0.0 if portals and not closed else _widest(plan, cells)
+    if widest > 0:  # where no two cells touch there is no passage that could be wider
         raise DiscretizeError(
             f"A body {2 * radius:.3g} m across fits through no {'door' if plan.doors else 'passage'} of plan "
-            f"{plan.name!r}: the widest is {_widest(plan, cells):.3g} m."
+            f"{plan.name!r}: the widest is {widest:.3g} m."
         )
     checkpoints.setflags(write=False)
     return CellMap(plan, tuple(cells), portals, checkpoints, radius, method, tuple(names))

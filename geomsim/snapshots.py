@@ -106,10 +106,15 @@ def draw_snapshots(
         team = range(len(moment.pursuers))
         for r in team:
             figures.trail(panel, r, moment.trails[r])
+        by = episode.outcome.pursuer
+        if moment.captured and by is not None:
+            figures.spotting(panel, moment.pursuers[by], moment.evader)
         figures.evader(panel, moment.evader, captured=moment.captured)
         for r in team:
             figures.robot(panel, r, moment.pursuers[r], float(moment.headings[r]), prefix="P")
-        told = f"t = {time:.1f} s" + (" · captured" if moment.captured else "")
+        told = f"t = {time:.1f} s"
+        if moment.captured and by is not None:
+            told += f" · captured by P{by + 1}"
         at = (left + panel_width / 2, top + panel_height + 12 * unit)
         draw_text(sheet, told, at, 13 * unit, colours.text, "centre")
 

@@ -70,6 +70,11 @@ class Figures:
             disc(image, centre, radius + grown, colour)
         self._label(image, f"{prefix}{number + 1}", centre, 13.0)
 
+    def spotting(self, image: Image, pursuer: Array, evader: Array) -> None:
+        """Draw the line of sight that ended the pursuit."""
+        ends = np.stack([self._view.pixels(pursuer), self._view.pixels(evader)])
+        line(image, ends, self._theme.evader, max(1, round(2.0 * self._unit)))
+
     def evader(self, image: Image, position: Array, *, captured: bool) -> None:
         """Draw the evader, a diamond with an E; a ring around it once it is captured."""
         centre = self._view.pixels(position)

@@ -68,7 +68,7 @@ class Floor:
         shape = (box.height, box.width)
         self.labels = label_image(cells, local, shape)
 
-        wall = _wall_cover(cells.plan, local, shape, edge, 1.1 * unit)
+        wall = _wall_cover(cells.plan, local, shape, edge, 1.5 * unit)
         self._is_wall = (wall > 0.5).astype(np.uint8)
         layers = [(wall, theme.wall)]
         if boundaries:

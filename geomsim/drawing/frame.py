@@ -131,6 +131,9 @@ class FrameDrawer:
         if style.plans and not moment.captured:
             for r in team:
                 figures.route(image, r, moment.routes[r])
+        by = self.episode.outcome.pursuer
+        if moment.captured and by is not None:
+            figures.spotting(image, moment.pursuers[by], moment.evader)
         if style.evader == "shown" or moment.captured:
             figures.evader(image, moment.evader, captured=moment.captured)
         for r in team:
@@ -176,6 +179,8 @@ class FrameDrawer:
         if moment.captured and out.pursuer is not None and out.cell is not None:
             told = f"captured by robot {out.pursuer + 1} in cell {out.cell + 1}"
             draw_text(image, told, (x, y), 16 * unit, theme.evader, "right", bold=True)
+        elif not out.captured and moment.time >= out.time - 1e-9:
+            draw_text(image, out.status.value, (x, y), 16 * unit, theme.muted, "right", bold=True)
 
 
 def draw_frame(episode: Episode, time: float, style: FrameStyle | None = None) -> Image:

@@ -31,12 +31,18 @@ class ProbabilityScale:
     def of(cls, beliefs: NDArray[np.float64]) -> ProbabilityScale:
         """Choose a scale for all beliefs of an episode, shape (B, N + 1)."""
         peaks = np.array([shares(b).max(initial=0.0) for b in beliefs])
-        return cls(min(1.0, round_number(max(float(np.quantile(peaks, 0.95)), 1e-6), up=True)))
+        return cls(min(1.0, _top(max(float(np.quantile(peaks, 0.95)), 1e-6))))
 
     def steps(self, share: NDArray[np.float64]) -> NDArray[np.intp]:
         """Return the index into a ramp of 256 colours for each share."""
         part: NDArray[np.float64] = np.sqrt(np.clip(share / self.top, 0.0, 1.0))
         return np.rint(255 * part).astype(np.intp)
+
+
+def _top(value: float) -> float:
+    """Return a round number not much above a value."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(next(c for c in np.array([1, 1.5, 2, 3, 4, 5, 6, 8, 10]) * power if c >= value * (1 - 1e-9)))
 
 
 def round_number(value: float, *, up: bool) -> float:
