@@ -105,12 +105,34 @@ def rasterise(
     Returns
     -------
     ndarray of uint8, shape (rows, columns)
-        254 where the middle of a pixel is free, 0 where a wall runs through it, 205 elsewhere.
+        254 where the middle of a pixel is free, 0 next to that and where a wall is thinner than a pixel, 205 elsewhere.
     """
+    inside = _inside((plan.walls - origin) / resolution, shape)
+    image = np.where(inside, FREE, UNKNOWN).astype(np.uint8)
+    beside = cv2.dilate(inside.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.bool_) & ~inside
+    # The free space is to the left of its rings: where there is also some a pixel to the right, the wall is thin.
+    for ring in shapely.segmentize(shapely.get_rings(plan.space), resolution / 2):
+        xy = (shapely.get_coordinates(ring) - origin) / resolution
+        step = np.diff(xy, axis=0)
+        middle = (xy[1:] + xy[:-1]) / 2
+        across = middle + np.stack([step[:, 1], -step[:, 0]], axis=1) / np.hypot(*step.T)[:, None]
+        thin = inside[_pixels(across, shape)]
+        beside[_pixels(middle[thin], shape)] = True
+    image[beside] = OCCUPIED
+    return image
+
+
+def _pixels(xy: NDArray[np.float64], shape: tuple[int, int]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Row and column of the pixels that contain points, given in pixels from the lower left corner."""
+    row, column = np.floor(shape[0] - xy[:, 1]).astype(np.intp), np.floor(xy[:, 0]).astype(np.intp)
+    return np.clip(row, 0, shape[0] - 1), np.clip(column, 0, shape[1] - 1)
+
+
+def _inside(walls: NDArray[np.float64], shape: tuple[int, int]) -> NDArray[np.bool_]:
+    """Find the pixels whose middle is free: from the left, an odd number of walls has been crossed."""
     rows, columns = shape
+    walls = np.stack([walls[:, :, 0], rows - walls[:, :, 1]], axis=2)
     crossings = np.zeros((rows, columns + 1), dtype=np.int64)
-    walls = (plan.walls - origin) / resolution
-    walls[:, :, 1] = rows - walls[:, :, 1]
     upper, lower = walls[:, :, 1].min(axis=1), walls[:, :, 1].max(axis=1)
     first, after = np.ceil(upper - 0.5).astype(int), np.ceil(lower - 0.5).astype(int)
     count = after - first
@@ -119,10 +141,4 @@ def rasterise(
     start, end = walls[edge, 0], walls[edge, 1]
     x = start[:, 0] + (row + 0.5 - start[:, 1]) / (end[:, 1] - start[:, 1]) * (end[:, 0] - start[:, 0])
     np.add.at(crossings, (row, np.clip(np.ceil(x - 0.5).astype(int), 0, columns)), 1)
-    inside = np.cumsum(crossings, axis=1)[:, :-1] % 2 == 1
-    image = np.where(inside, FREE, UNKNOWN).astype(np.uint8)
-    for ring in shapely.get_rings(plan.space):
-        xy = (shapely.get_coordinates(ring) - origin) / resolution
-        pixels = np.stack([np.floor(xy[:, 0]), np.floor(rows - xy[:, 1])], axis=1).astype(np.int32)
-        cv2.polylines(image, [pixels], isClosed=True, color=OCCUPIED, thickness=1, lineType=cv2.LINE_4)
-    return image
+    return np.asarray(np.cumsum(crossings, axis=1)[:, :-1] % 2 == 1)
