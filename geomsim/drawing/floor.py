@@ -45,6 +45,8 @@ class Floor:
     ----------
     view : Viewport
         From metres to pixels of the whole image.
+    unit : float
+        Pixels that a thin line of the floor takes: less where cells are small.
     labels : ndarray of intp, shape (box.height, box.width)
         Number of the cell, from 1, at each pixel of the box; 0 where there is none.
     """
@@ -61,14 +63,15 @@ class Floor:
     ) -> None:
         self.box = box
         self._theme = theme
-        edge = 2.5 * unit  # the outer half of a wall's stroke needs room
-        pad = int(np.ceil(edge))
+        pad = int(np.ceil(2.5 * unit))  # the outer half of a wall's stroke needs room
         self.view = Viewport.fit(cells.plan.bounds, box.inset(pad, pad, pad, pad))
+        cell = self.view.scale * float(np.sqrt(cells.plan.area / max(len(cells), 1)))
+        self.unit = unit = unit * float(np.clip(cell / (60.0 * unit), 0.4, 1.0))
         local = Viewport(self.view.scale, (self.view.origin[0] - box.left, self.view.origin[1] - box.top))
         shape = (box.height, box.width)
         self.labels = label_image(cells, local, shape)
 
-        wall = _wall_cover(cells.plan, local, shape, edge, 1.5 * unit)
+        wall = _wall_cover(cells.plan, local, shape, 2.5 * unit, 1.5 * unit)
         self._is_wall = (wall > 0.5).astype(np.uint8)
         layers = [(wall, theme.wall)]
         if boundaries:

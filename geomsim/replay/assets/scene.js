@@ -36,6 +36,10 @@ class Scene {
     const [x0, y0, x1, y1] = episode.data.bounds, edge = 6 * this.unit;
     this.scale = Math.min((canvas.width - 2 * edge) / (x1 - x0), (canvas.height - 2 * edge) / (y1 - y0));
     this.origin = [canvas.width / 2 - (this.scale * (x0 + x1)) / 2, canvas.height / 2 + (this.scale * (y0 + y1)) / 2];
+    // Where cells are small, lines are fine.
+    const area = episode.data.cells.reduce((sum, cell) => sum + cell.area, 0) / episode.data.cells.length;
+    const side = 100 * this.scale * Math.sqrt(area);
+    this.fine = this.unit * Math.min(1, Math.max(0.4, side / (60 * this.unit)));
     this.painted = "";
   }
 
@@ -63,7 +67,7 @@ class Scene {
     const key = [belief ? step : -1, numbers, this.theme.page, this.unit].join();
     if (key === this.painted) return;
     this.painted = key;
-    const context = this.base.getContext("2d"), { theme, unit, scale } = this;
+    const context = this.base.getContext("2d"), { theme, fine: unit, scale } = this;
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.fillStyle = theme.page;
     context.fillRect(0, 0, this.base.width, this.base.height);
@@ -96,7 +100,7 @@ class Scene {
     this.metric(context);
     context.lineJoin = "round";
     context.strokeStyle = this.theme.wall;
-    context.lineWidth = (3 * this.unit) / this.scale;
+    context.lineWidth = (3 * this.fine) / this.scale;
     context.stroke(this.space);
     context.setTransform(1, 0, 0, 1, 0, 0);
   }
