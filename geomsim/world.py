@@ -7,6 +7,8 @@ continuous collision detection: a body must not move further in a step than its 
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import pymunk
 import shapely
@@ -41,10 +43,8 @@ class World:
         # As fast as the default tree for few bodies and faster for hundreds. Always the same one: hash and tree take
         # contacts in another order, and a body's path must not depend on how many there are.
         self.space.use_spatial_hash(1.0, 1000)
-        for a, b in walls.tolist():
-            wall = pymunk.Segment(self.space.static_body, tuple(a), tuple(b), 0.0)
-            wall.filter = _WALL
-            self.space.add(wall)
+        self._walls = walls
+        _add_walls(self.space, walls)
         self.radii = np.array(radii, dtype=np.float64)
         for position, radius in zip(positions.tolist(), self.radii.tolist(), strict=True):
             body = pymunk.Body(mass=1.0, moment=float("inf"))
@@ -98,7 +98,14 @@ class World:
 
     def sees(self, eye: NDArray[np.float64], target: NDArray[np.float64]) -> bool:
         """Whether no wall is on the straight way between two points; bodies do not block it."""
-        return self.space.segment_query_first(tuple(eye.tolist()), tuple(target.tolist()), 0.0, _RAY) is None
+        return self._rays.segment_query_first(tuple(eye.tolist()), tuple(target.tolist()), 0.0, _RAY) is None
+
+    @cached_property
+    def _rays(self) -> pymunk.Space:
+        """The walls alone, in the default tree: a spatial hash misses a wall that ends in a corner of its squares."""
+        space = pymunk.Space()
+        _add_walls(space, self._walls)
+        return space
 
     def keep(self, which: NDArray[np.intp]) -> None:
         """Go on with some of the bodies only, given by their indices in rising order; the others are removed."""
@@ -125,6 +132,13 @@ class World:
         rows = np.frombuffer(self._get.float_buf(), dtype=np.float64).reshape(-1, 4)
         mine = rows[: self._count].copy() if self._order is None else rows[self._order]
         self.positions, self.velocities = mine[:, :2], mine[:, 2:]
+
+
+def _add_walls(space: pymunk.Space, walls: NDArray[np.float64]) -> None:
+    for a, b in walls.tolist():
+        wall = pymunk.Segment(space.static_body, tuple(a), tuple(b), 0.0)
+        wall.filter = _WALL
+        space.add(wall)
 
 
 def count_wall_crossings(track: NDArray[np.float64], walls: NDArray[np.float64]) -> int:
