@@ -52,7 +52,7 @@ class WallGrid:
         columns, rows = (max(1, math.floor(float(extent) / size) + 1) for extent in high - low)
         column, row = np.meshgrid(np.arange(columns), np.arange(rows))
         x, y = low[0] + size * column.reshape(-1), low[1] + size * row.reshape(-1)
-        tree = shapely.STRtree(np.atleast_1d(shapely.linestrings(walls)))
+        tree = shapely.STRtree(np.array(shapely.linestrings(walls), dtype=object))
         square, wall = tree.query(shapely.box(x, y, x + size, y + size), predicate="dwithin", distance=_MARGIN)
         order = np.lexsort((wall, square))
         first = np.concatenate([[0], np.cumsum(np.bincount(square, minlength=columns * rows))])
