@@ -22,7 +22,7 @@ def test_there_are_a_house_and_an_office():
     ("given", "sentence"),
     [
         ("offce", "There is no file offce and no bundled plan of this name; did you mean 'office'?"),
-        ("xyzzy", "no bundled plan of this name; choose one of 'house', 'office'"),
+        ("xyzzy", "no bundled plan of this name; choose one of 'house', 'museum', 'office', 'school'"),
         ("nowhere.geojson", "There is no file nowhere.geojson."),
         ("nowhere/map.yaml", "There is no file nowhere/map.yaml."),
         (".", ". is a folder; a floor plan is a file."),
