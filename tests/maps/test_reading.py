@@ -39,7 +39,7 @@ def test_what_is_not_there_is_refused(given, sentence, tmp_path, monkeypatch):
 def test_an_unknown_kind_of_file_is_refused(tmp_path):
     path = tmp_path / "plan.docx"
     path.write_text("")
-    with pytest.raises(PlanError, match=r"files of the kind \.docx cannot be read; readable are \.geojson"):
+    with pytest.raises(PlanError, match=r"files of the kind \.docx cannot be read; readable are \.bmp"):
         read_plan(path)
     bare = tmp_path / "plan"
     bare.write_text("")
