@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -140,6 +141,19 @@ class SearchModel:
         steps = int(self.moves[pursuer].steps[move])
         return move, steps - left if state.cell == state.target else max(0, steps - left)
 
+    def pursuer_state(self, pursuer: int, move: int, done: int) -> PursuerState:
+        """Return the state of a pursuer that has done so many steps of a move."""
+        moves = self.moves[pursuer]
+        cell = int(np.searchsorted(moves.start, move, side="right")) - 1
+        target, steps = int(moves.target[move]), int(moves.steps[move])
+        if done >= steps:
+            return PursuerState(target)
+        if cell != target:
+            edge = move - cell - 1
+            entered = done / steps * self.graph.length[edge] >= self.graph.leave[edge] - 1e-9
+            cell = target if entered else cell
+        return PursuerState(cell, target, (steps - done) * self.step)
+
     def timeline(self, pursuer: int, state: PursuerState) -> NDArray[np.intp]:
         """Return where a pursuer looks from at the steps to come if it ends the hop it is on and then stands still.
 
@@ -168,3 +182,44 @@ class SearchModel:
             padded = np.concatenate([timeline, np.full(horizon - len(timeline), timeline[-1])])
             kept *= self.looks.kept(padded)
         return kept
+
+    def foresee(
+        self,
+        belief: NDArray[np.float64],
+        moves: Sequence[int],
+        done: Sequence[int],
+        plans: Sequence[Sequence[int]],
+        steps: int,
+    ) -> NDArray[np.float64]:
+        """Return the beliefs to come under a plan.
+
+        Parameters
+        ----------
+        belief : ndarray, shape (N,)
+            Probability of each state now.
+        moves, done : sequence of int
+            The move that each pursuer is on, and how many of its steps are done.
+        plans : sequence of sequence of int
+            The moves that each pursuer begins after that.
+        steps : int
+            How many belief steps to look ahead.
+
+        Returns
+        -------
+        ndarray, shape (T + 1, N)
+            The belief now and after each step; T is ``steps``, or less if one of the plans ends before.
+        """
+        on, gone, to_come = list(moves), list(done), [iter(plan) for plan in plans]
+        beliefs = [belief]
+        for _ in range(steps):
+            after = beliefs[-1] @ self.dispersion
+            for i, table in enumerate(self.moves):
+                if gone[i] >= table.steps[on[i]]:
+                    following = next(to_come[i], None)
+                    if following is None:
+                        return np.array(beliefs)
+                    on[i], gone[i] = following, 0
+                self.looks.take(after[np.newaxis], table.views[on[i], [max(0, gone[i])]])
+                gone[i] += 1
+            beliefs.append(after)
+        return np.array(beliefs)
