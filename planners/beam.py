@@ -136,7 +136,7 @@ class _Beam:
 
     def advance(self) -> None:
         """Take all plans one belief step further."""
-        self.free = np.asarray(self.free @ self.model.dispersion)
+        self.free = self.model.disperse(self.free)
         for pursuer in range(self.move.shape[1]):
             self._choose(pursuer)
         left = self.left

@@ -187,7 +187,7 @@ def _follow(
                     moves[i], done[i] = model.move(pursuers[i].cell, decision.path[0]), 0
                     plans[i] = decision.path[1:]
                     paths[i].append(decision.path[0])
-        free = free @ model.dispersion
+        free = model.disperse(free[np.newaxis])[0]
         for i, move in enumerate(moves):
             model.looks.take(free[np.newaxis], model.moves[i].views[move, [done[i]]])
             done[i] += 1

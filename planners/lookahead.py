@@ -194,14 +194,14 @@ def _simulate(
 ) -> NDArray[np.float64]:
     """Return the beliefs after one more hop each; hops are sorted, those of most steps first."""
     # The first dispersion is the same for all hops from one node, so it is done before they part.
-    after: NDArray[np.float64] = (beliefs @ model.dispersion)[parent]
+    after: NDArray[np.float64] = model.disperse(beliefs)[parent]
     clock = clock[parent]
     last = len(unseen) - 1
     for k in range(int(steps[0])):
         going = int(np.searchsorted(-steps, -k, side="left"))
         active = after[:going]
         if k > 0:
-            active[:] = active @ model.dispersion
+            active[:] = model.disperse(active)
         active *= unseen[np.minimum(clock[:going] + k, last)] if last else unseen[0]
         model.looks.take(active, views[:going, k])
     return after

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Looks", "Moves", "SearchModel"]
 
-# Up to here a dense product of many beliefs with the matrix is faster than a sparse one (measured, two cores).
-DENSE_STATES = 192
-
 
 @dataclass(frozen=True, slots=True)
 class Moves:
@@ -109,7 +106,7 @@ class SearchModel:
     """
 
     graph: SearchGraph
-    dispersion: Sparse | NDArray[np.float64]
+    dispersion: Sparse
 
     def __init__(self, problem: SearchProblem) -> None:
         self.graph = problem.graph
@@ -117,10 +114,19 @@ class SearchModel:
         self.speeds = problem.speeds
         inner = problem.motion.matrix(problem.graph, problem.time_step)[1:, 1:]
         self.states = inner.shape[0]
-        self.dispersion = inner.toarray() if self.states <= DENSE_STATES else inner.tocsr()
+        self.dispersion = inner.tocsr()
+        self._transposed = inner.T.tocsr()
         self.looks = Looks(problem.capture.table(problem.graph))
         by_speed = {speed: Moves.of(problem, speed) for speed in sorted(set(problem.speeds))}
         self.moves = tuple(by_speed[speed] for speed in problem.speeds)
+
+    def disperse(self, beliefs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return many beliefs, shape (K, N), one step of the evader's motion later.
+
+        A sparse product throughout: for 60 cells it is as fast as a dense one, and it does not wait for threads that
+        another program holds up.
+        """
+        return np.ascontiguousarray((self._transposed @ beliefs.T).T)
 
     def move(self, cell: int, target: int) -> int:
         """Return the move from a cell to a neighbour, or the wait in the cell; GraphError where there is none."""
@@ -212,7 +218,7 @@ class SearchModel:
         on, gone, to_come = list(moves), list(done), [iter(plan) for plan in plans]
         beliefs = [belief]
         for _ in range(steps):
-            after = beliefs[-1] @ self.dispersion
+            after = self._transposed @ beliefs[-1]
             for i, table in enumerate(self.moves):
                 if gone[i] >= table.steps[on[i]]:
                     following = next(to_come[i], None)
