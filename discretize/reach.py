@@ -60,6 +60,13 @@ class Reach:
         shapely.prepare(skin)
         return skin
 
+    @cached_property
+    def _rind(self) -> BaseGeometry:
+        """Boundary of the skin; whether a line meets it is much quicker to tell than whether a polygon covers it."""
+        rind = self._skin.boundary
+        shapely.prepare(rind)
+        return rind
+
     def part_of(self, points: NDArray[np.float64]) -> NDArray[np.intp]:
         """Part that holds each point, shape (k,); -1 where a body cannot be.
 
@@ -76,7 +83,8 @@ class Reach:
 
     def allows(self, ways: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Tell for each straight way, shape (k, 2, 2), whether a body can go along it without touching a wall."""
-        return np.asarray(shapely.covers(self._skin, shapely.linestrings(ways)), dtype=np.bool_)
+        inside = shapely.contains_xy(self._skin, ways[:, 0, 0], ways[:, 0, 1])
+        return np.asarray(inside & ~shapely.intersects(self._rind, shapely.linestrings(ways)), dtype=np.bool_)
 
     def within(self, cell: shapely.Polygon) -> BaseGeometry:
         """Return the part of a cell in which a body can be."""

@@ -35,6 +35,8 @@ class ScenarioFlags:
         Heuristic that the planner minimises: entropy, target-probability, probability, distance-over-probability.
     depth
         Cells that the planner looks ahead.
+    option
+        Another parameter of the planner, as NAME=VALUE; may be given several times.
     capture
         What counts as capture: sight or cell.
     range
@@ -73,6 +75,7 @@ class ScenarioFlags:
     planner: str | None = None
     cost: str | None = None
     depth: int | None = None
+    option: tuple[str, ...] = ()
     capture: str | None = None
     range: float | None = None
     fov_degrees: float | None = None
@@ -91,7 +94,7 @@ class ScenarioFlags:
 
     def given(self) -> dict[str, Any]:
         """Return the keys that were given, with their values as a scenario has them."""
-        told = {f.name: getattr(self, f.name) for f in fields(self)}
+        told = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "option"}
         if self.start is not None:
             try:
                 told["start"] = tuple(int(part) for part in self.start.split(","))
@@ -99,4 +102,20 @@ class ScenarioFlags:
                 raise GeomsimError(
                     f"--start takes cell numbers with commas between them, not {self.start!r}."
                 ) from None
+        if self.option:
+            told["options"] = dict(_option(text) for text in self.option)
         return {key: value for key, value in told.items() if value is not None}
+
+
+def _option(text: str) -> tuple[str, bool | int | float | str]:
+    """Read NAME=VALUE, the value as TOML would where it can."""
+    import tomllib
+
+    name, equals, value = text.partition("=")
+    if not (name.isidentifier() and equals and value):
+        raise GeomsimError(f"--option takes NAME=VALUE, not {text!r}.")
+    try:
+        read = tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return name, value
+    return name, read if isinstance(read, bool | int | float) else value
