@@ -105,7 +105,7 @@ class Summary:
     def __str__(self) -> str:
         width = max(len(method.name) for method in self.methods)
         head = f"{'method':<{width}}  {'mean':>8} {'SEM':>6} {'median':>7} {'captured':>8} {'predicted':>9}"
-        lines = [head + f"  less than {self.reference}, 95 % interval"]
+        lines = [head + f"  against {self.reference}, 95 % interval"]
         for method in self.methods:
             seen, gap = method.observed, method.difference
             mean = f"{'>=' if seen.censored else ''}{seen.mean:.1f}"
