@@ -38,7 +38,7 @@ class PlannerEntry:
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """Names of what it takes besides nothing: none, or some of ``cost`` and ``depth``."""
+        """Names of the keyword arguments that ``make`` takes; none, or some of ``cost`` and ``depth``."""
         return tuple(f.name for f in fields(self.make))  # type: ignore[arg-type]  # every planner is a dataclass
 
 
