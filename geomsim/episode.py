@@ -150,3 +150,9 @@ class Episode:
         from geomsim.drawing import write_frames
 
         return write_frames(self, Path(folder), **options)
+
+    def save_replay(self, path: str | Path) -> Path:
+        """Write a web page that plays the episode; see :func:`geomsim.replay.write_replay`."""
+        from geomsim.replay import write_replay
+
+        return write_replay(self, Path(path))

@@ -24,20 +24,20 @@ __all__ = ["draw_cells", "write_cells_picture"]
 _HUES = (20.0, 75.0, 125.0, 190.0, 250.0, 315.0)
 
 
-def write_cells_picture(cells: CellMap, path: Path, *, width: int = 1600, theme: str = "light") -> Path:
+def write_cells_picture(cells: CellMap, path: Path, *, width: int | None = None, theme: str = "light") -> Path:
     """Write the picture of :func:`draw_cells` as PNG; GeomsimError if it cannot be written."""
     return write_png(draw_cells(cells, width=width, theme=theme), path)
 
 
-def draw_cells(cells: CellMap, *, width: int = 1600, theme: str = "light") -> Image:
+def draw_cells(cells: CellMap, *, width: int | None = None, theme: str = "light") -> Image:
     """Draw a cell map: cells in soft colours with numbers from 1 where there is room, portals, routes and repairs.
 
     Parameters
     ----------
     cells : CellMap
         What to draw.
-    width : int
-        Pixels; the height follows the plan.
+    width : int, optional
+        Pixels, by default 1600 to 3200, more for more cells; the height follows the plan.
     theme : str
         "light" or "dark".
 
@@ -47,7 +47,9 @@ def draw_cells(cells: CellMap, *, width: int = 1600, theme: str = "light") -> Im
         Blue first.
     """
     colours = find_theme(theme)
-    unit = width / 1280
+    if width is None:
+        width = round(float(np.clip(1600 * np.sqrt(len(cells) / 300), 1600, 3200)))
+    unit = 1.25 * float(np.sqrt(width / 1600))
     x0, y0, x1, y1 = cells.plan.bounds
     margin, header = round(16 * unit), round(46 * unit)
     tall = float(np.clip((y1 - y0) / (x1 - x0), 0.3, 1.2))
@@ -55,8 +57,8 @@ def draw_cells(cells: CellMap, *, width: int = 1600, theme: str = "light") -> Im
     image = blank(width, box.bottom + margin, colours.page)
     floor = Floor(cells, box, colours, unit)
     floor.paint(image, _soft_colours(cells, colours))
-    _draw_routes(image, cells, floor.view, colours, unit)
-    _draw_repairs(image, cells.plan, floor.view, colours, unit)
+    _draw_routes(image, cells, floor.view, colours, floor.unit)
+    _draw_repairs(image, cells.plan, floor.view, colours, floor.unit)
     _draw_numbers(image, cells, floor.view, colours, unit)
     _draw_header(image, cells, floor.view, colours, unit)
     return image
@@ -111,7 +113,7 @@ def _draw_numbers(image: Image, cells: CellMap, view: Viewport, theme: Theme, un
 
 
 def _draw_repairs(image: Image, plan: FloorPlan, view: Viewport, theme: Theme, unit: float) -> None:
-    thick = max(1, round(2 * unit))
+    thick = max(1, round(1.6 * unit))
     for repair in plan.repairs:
         for part in shapely.get_parts(repair.geometry):
             pixels = view.pixels(shapely.get_coordinates(part))
@@ -120,7 +122,7 @@ def _draw_repairs(image: Image, plan: FloorPlan, view: Viewport, theme: Theme, u
                 tint(image, outline, theme.repair, 0.35)
                 line(image, outline, theme.repair, thick, closed=True)
             elif isinstance(part, shapely.Point):
-                disc(image, pixels[0], 4 * unit, theme.repair)
+                disc(image, pixels[0], 3 * unit, theme.repair)
             else:
                 line(image, pixels, theme.repair, thick)
 

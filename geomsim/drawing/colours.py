@@ -63,11 +63,13 @@ def ramp(
     """
     t = np.linspace(0.0, 1.0, steps)
     ls, cs, hs = (a + (b - a) * t for a, b in (light, chroma, np.radians(hue)))
-    for _ in range(40):
+    least, most = np.zeros(steps), cs
+    for _ in range(20):  # bisection, so that what is cut is cut smoothly
         rgb = _oklch_to_rgb(ls, cs, hs)
         inside = np.all((rgb > -1e-4) & (rgb < 1 + 1e-4), axis=1)
-        cs = np.where(inside, cs, cs * 0.95)
-    return np.rint(255 * np.clip(_oklch_to_rgb(ls, cs, hs), 0, 1)).astype(np.uint8)
+        least, most = np.where(inside, cs, least), np.where(inside, most, cs)
+        cs = (least + most) / 2
+    return np.rint(255 * np.clip(_oklch_to_rgb(ls, least, hs), 0, 1)).astype(np.uint8)
 
 
 def lightness(rgb: NDArray[np.uint8]) -> NDArray[np.float64]:

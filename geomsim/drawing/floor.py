@@ -16,7 +16,7 @@ from geomsim.drawing.theme import Theme
 from geomsim.drawing.viewport import Box, Viewport
 from maps import FloorPlan
 
-__all__ = ["Floor", "inner_boundaries", "label_image"]
+__all__ = ["Floor", "inner_boundaries", "label_image", "thin_walls"]
 
 # Static parts are drawn this many times larger and averaged, which is anti-aliasing at its best.
 _ZOOM = 4
@@ -45,6 +45,8 @@ class Floor:
     ----------
     view : Viewport
         From metres to pixels of the whole image.
+    unit : float
+        Pixels that a thin line of the floor takes: less where cells are small.
     labels : ndarray of intp, shape (box.height, box.width)
         Number of the cell, from 1, at each pixel of the box; 0 where there is none.
     """
@@ -61,14 +63,15 @@ class Floor:
     ) -> None:
         self.box = box
         self._theme = theme
-        edge = 2.5 * unit  # the outer half of a wall's stroke needs room
-        pad = int(np.ceil(edge))
+        pad = int(np.ceil(2.5 * unit))  # the outer half of a wall's stroke needs room
         self.view = Viewport.fit(cells.plan.bounds, box.inset(pad, pad, pad, pad))
+        cell = self.view.scale * float(np.sqrt(cells.plan.area / max(len(cells), 1)))
+        self.unit = unit = unit * float(np.clip(cell / (60.0 * unit), 0.4, 1.0))
         local = Viewport(self.view.scale, (self.view.origin[0] - box.left, self.view.origin[1] - box.top))
         shape = (box.height, box.width)
         self.labels = label_image(cells, local, shape)
 
-        wall = _wall_cover(cells.plan, local, shape, edge, 1.5 * unit)
+        wall = _wall_cover(cells.plan, local, shape, 2.5 * unit, 1.5 * unit)
         self._is_wall = (wall > 0.5).astype(np.uint8)
         layers = [(wall, theme.wall)]
         if boundaries:
@@ -119,6 +122,12 @@ def inner_boundaries(cells: CellMap) -> list[NDArray[np.float64]]:
     return [shapely.get_coordinates(g) for g in merged if g.length > 1e-2]
 
 
+def thin_walls(plan: FloorPlan) -> shapely.Geometry:
+    """Return what lies between areas of free space that are less than half a metre apart."""
+    closed = plan.space.buffer(_THIN / 2, join_style="mitre").buffer(-_THIN / 2, join_style="mitre")
+    return shapely.difference(closed, plan.space)
+
+
 def _rings(area: shapely.Geometry, view: Viewport) -> list[NDArray[np.int32]]:
     rings = (ring for part in shapely.get_parts(area) for ring in shapely.get_rings(part))
     return [fixed(view.pixels(shapely.get_coordinates(ring))) for ring in rings]
@@ -137,8 +146,7 @@ def _wall_cover(
 ) -> NDArray[np.float32]:
     """Walls are drawn mostly on their outer side, so that the free space shows its size; thin ones are filled."""
     rings = _rings(plan.space, view.zoomed(_ZOOM))
-    closed = plan.space.buffer(_THIN / 2, join_style="mitre").buffer(-_THIN / 2, join_style="mitre")
-    thin = _rings(closed.difference(plan.space), view.zoomed(_ZOOM))
+    thin = _rings(thin_walls(plan), view.zoomed(_ZOOM))
 
     def draw(mask: NDArray[np.uint8]) -> None:
         cv2.polylines(mask, rings, True, (255,), max(1, round(2 * edge * _ZOOM)), cv2.LINE_8, SHIFT)

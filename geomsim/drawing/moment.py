@@ -110,13 +110,13 @@ class Timeline:
         if not len(mine):
             return np.empty((0, 2))
         k = int(mine[-1])
-        way = self._way(k)
+        way = self.way(k)
         start = self._gone[np.searchsorted(episode.times, episode.decision_times[k] - 1e-9), pursuer]
         along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])
         return np.vstack([here, way[along > gone - start + 1e-9]])
 
-    def _way(self, k: int) -> Array:
-        """Whole way of a decision, along the legs from checkpoint to checkpoint."""
+    def way(self, k: int) -> Array:
+        """Return the whole way of decision ``k`` along the legs between checkpoints, shape (m, 2), metres."""
         if k not in self._ways:
             episode = self._episode
             i = min(int(np.searchsorted(episode.times, episode.decision_times[k] - 1e-9)), len(episode.times) - 1)

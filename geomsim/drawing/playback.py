@@ -47,7 +47,7 @@ class Playback:
     times: NDArray[np.float64]
 
     @classmethod
-    def of(cls, episode: Episode, fps: int = 25, speedup: float | None = None) -> Playback:
+    def of(cls, episode: Episode, fps: int = 25, speedup: float | None = None, length: float | None = None) -> Playback:
         """Plan the frames of an episode.
 
         Parameters
@@ -59,6 +59,8 @@ class Playback:
         speedup : float, optional
             Seconds of the episode in a second of the video. By default a round number with which the video lasts
             40 s at most.
+        length : float, optional
+            Instead of ``speedup``: how long the video lasts with the stand at its end, seconds.
 
         Raises
         ------
@@ -68,6 +70,12 @@ class Playback:
         if not 1 <= fps <= 240:
             raise DrawingError(f"A video has 1 to 240 frames a second, not {fps}.")
         lasts = float(episode.times[-1])
+        if length is not None:
+            if speedup is not None:
+                raise DrawingError("A video can be given a speed-up or a length, not both.")
+            if not _HOLD < length < np.inf:
+                raise DrawingError(f"A video lasts more than {_HOLD:g} s, the stand at its end, not {length:g} s.")
+            speedup = max(lasts, 1e-9) / (length - _HOLD)
         if speedup is None:
             speedup = next((s for s in _SPEEDS if lasts / s <= _LONGEST), lasts / _LONGEST)
         if not 0 < speedup < np.inf:

@@ -46,6 +46,27 @@ def test_the_video_shows_the_frames_that_were_drawn(episode: Episode, tmp_path: 
         assert np.abs(images[k][8:16, 300:340].astype(int) - bgr(THEMES["light"].page)).max() <= 3
 
 
+@pytest.mark.parametrize(("name", "codec", "gap"), [("a.webm", "vp9", 4.0), ("a.gif", "gif", 2.0)])
+def test_other_formats_show_the_same(episode: Episode, tmp_path: Path, name: str, codec: str, gap: float) -> None:
+    options = {"size": SMALL, "fps": 10, "speedup": 8.0}
+    path = write_video(episode, tmp_path / name, **options)
+    with av.open(str(path)) as video:
+        assert video.streams.video[0].codec_context.name == codec
+        images = [frame.to_ndarray(format="bgr24") for frame in video.decode(video=0)]
+    playback = Playback.of(episode, 10, 8.0)
+    drawer = FrameDrawer(episode, FrameStyle(size=SMALL, note=playback.note))
+    assert len(images) == len(playback.times)
+    for k in (0, 7, -1):
+        assert np.abs(images[k].astype(int) - drawer.draw(float(playback.times[k]))).mean() < gap
+    assert path.read_bytes() == write_video(episode, tmp_path / f"b{path.suffix}", **options).read_bytes()
+
+
+def test_a_video_lasts_as_long_as_it_is_told(episode: Episode) -> None:
+    playback = Playback.of(episode, 25, length=5.0)
+    assert len(playback.times) / 25 == pytest.approx(5.0, abs=0.1)
+    assert playback.speedup == pytest.approx(4.0)
+
+
 def test_a_player_need_not_wait_for_the_whole_file(episode: Episode, tmp_path: Path) -> None:
     data = write_video(episode, tmp_path / "a.mp4", size=SMALL, speedup=20.0).read_bytes()
     assert 0 < data.index(b"moov") < data.index(b"mdat")
@@ -132,10 +153,12 @@ def test_a_folder_that_is_none_is_a_sentence(episode: Episode, tmp_path: Path, w
 @pytest.mark.parametrize(
     ("name", "options", "word"),
     [
-        ("a.avi", {}, "a.avi"),
+        ("a.webp", {}, "'.webm'"),
         ("a.mp4", {"size": (641, 360)}, "641"),
         ("a.mp4", {"fps": 0}, "not 0"),
         ("a.mp4", {"speedup": -1.0}, "-1"),
+        ("a.mp4", {"length": 2.0}, "2 s"),
+        ("a.mp4", {"length": 9.0, "speedup": 2.0}, "not both"),
         ("a.mp4", {"theme": "blue"}, "'blue'"),
     ],
 )
