@@ -10,7 +10,7 @@ import shapely
 from numpy.typing import NDArray
 
 from discretize.errors import DiscretizeError
-from discretize.sharing import segment_tree
+from discretize.rays import NOTHING, arrangement, cross, reflex_corners, shoot
 from discretize.sight import Sight
 from maps import FloorPlan
 
@@ -21,12 +21,6 @@ _LARGEST = 20_000
 
 _PAIRS = 1_000_000
 """So many pairs of rays tell how often rays cross, where there are too many to cut along all."""
-
-_OVER = 1e-6
-"""Rays go this far into the walls that they hit, so that they cut through to them, metres."""
-
-_SLIVER = 1e-9
-"""A piece thinner than this lies between two copies of one ray, metres."""
 
 
 def visibility_cells(plan: FloorPlan) -> list[shapely.Polygon]:
@@ -48,7 +42,7 @@ def visibility_cells(plan: FloorPlan) -> list[shapely.Polygon]:
             f"Plan {plan.name!r} has about {count} visibility cells; they are made up to {_LARGEST}. "
             f"Method 'exact' makes far fewer."
         )
-    return _faces(plan, rays)
+    return arrangement(plan, rays)
 
 
 def visibility_count(plan: FloorPlan) -> int:
@@ -61,7 +55,7 @@ def visibility_count(plan: FloorPlan) -> int:
     """
     rays = visibility_rays(plan)
     count = _estimate(plan, rays)
-    return count if count > _LARGEST else len(_faces(plan, rays))
+    return count if count > _LARGEST else len(arrangement(plan, rays))
 
 
 def visibility_rays(plan: FloorPlan) -> NDArray[np.float64]:
@@ -77,9 +71,7 @@ def visibility_rays(plan: FloorPlan) -> NDArray[np.float64]:
     ndarray, shape (k, 2, 2)
         From a reflex corner to the wall that the ray hits, metres.
     """
-    corner, before, after = _reflex_corners(plan)
-    if not len(corner):
-        return np.empty((0, 2, 2))
+    corner, before, after = reflex_corners(plan)
     origins, ways = [corner, corner], [corner - before, corner - after]
     sight = Sight(plan)
     for k in range(len(corner) - 1):
@@ -91,21 +83,7 @@ def visibility_rays(plan: FloorPlan) -> NDArray[np.float64]:
         other = other[sight.between(np.broadcast_to(corner[k], other.shape), other)]
         origins += [other, np.broadcast_to(corner[k], other.shape)]
         ways += [other - corner[k], corner[k] - other]
-    origin, way = np.concatenate(origins), np.concatenate(ways)
-    way /= np.hypot(*way.T)[:, None]
-    _, once = np.unique(np.round(np.concatenate([origin, way], axis=1), 9), axis=0, return_index=True)
-    return _shoot(origin[np.sort(once)], way[np.sort(once)], plan.walls)
-
-
-def _reflex_corners(plan: FloorPlan) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Reflex corners with the corners before and after them, each of shape (k, 2)."""
-    rows = []
-    for ring in shapely.get_rings(shapely.orient_polygons(np.array(plan.parts, dtype=object))):
-        xy = shapely.get_coordinates(ring)[:-1]
-        rows.append(np.stack([xy, np.roll(xy, 1, axis=0), np.roll(xy, -1, axis=0)]))
-    corner, before, after = np.concatenate(rows, axis=1)
-    reflex = _cross(corner - before, after - corner) < -_SLIVER
-    return corner[reflex], before[reflex], after[reflex]
+    return shoot(np.concatenate(origins), np.concatenate(ways), plan.walls)
 
 
 def _tangent(
@@ -113,29 +91,7 @@ def _tangent(
 ) -> NDArray[np.bool_]:
     """Tell whether the line from start over a corner has both walls of the corner on one side."""
     way = corner - start
-    return np.asarray(_cross(way, before - corner) * _cross(way, after - corner) >= -_SLIVER)
-
-
-def _shoot(origin: NDArray[np.float64], way: NDArray[np.float64], walls: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Follow rays until they hit a wall, looking ever further ahead."""
-    tree = segment_tree(walls)
-    span = walls[:, 1] - walls[:, 0]
-    end = np.full(len(origin), np.inf)
-    reach, todo = 4.0, np.arange(len(origin))
-    while len(todo) and reach < 1e6:
-        lines = np.stack([origin[todo], origin[todo] + way[todo] * reach], axis=1)
-        which, wall = tree.query(shapely.linestrings(lines))
-        k = todo[which]
-        beside = walls[wall, 0] - origin[k]
-        slope = _cross(way[k], span[wall])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ahead, along = _cross(beside, span[wall]) / slope, _cross(beside, way[k]) / slope
-        hit = (np.abs(slope) > _SLIVER) & (ahead > _OVER) & (along > -_SLIVER) & (along < 1 + _SLIVER)
-        np.minimum.at(end, k[hit], ahead[hit])
-        todo = todo[end[todo] > reach]
-        reach *= 4
-    found = np.isfinite(end)
-    return np.stack([origin[found], origin[found] + way[found] * (end[found, None] + _OVER)], axis=1)
+    return np.asarray(cross(way, before - corner) * cross(way, after - corner) >= -NOTHING)
 
 
 def _estimate(plan: FloorPlan, rays: NDArray[np.float64]) -> int:
@@ -153,21 +109,5 @@ def _estimate(plan: FloorPlan, rays: NDArray[np.float64]) -> int:
 def _apart(lines: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Tell whether each line keeps the ends of the other segment apart."""
     way = lines[:, 1] - lines[:, 0]
-    first, second = (_cross(way, others[:, k] - lines[:, 0]) for k in (0, 1))
+    first, second = (cross(way, others[:, k] - lines[:, 0]) for k in (0, 1))
     return np.asarray(first * second < 0)
-
-
-def _faces(plan: FloorPlan, rays: NDArray[np.float64]) -> list[shapely.Polygon]:
-    """Pieces of free space between rays, doors and walls."""
-    space = shapely.set_precision(plan.space, 0)
-    doors = [shapely.set_precision(door, 0) for door in plan.doors]
-    lines = [*shapely.get_rings(shapely.get_parts(space)), *(shapely.LineString(ray) for ray in rays), *doors]
-    faces = shapely.get_parts(shapely.polygonize(list(shapely.get_parts(shapely.union_all(lines)))))
-    shapely.prepare(space)
-    inside = shapely.contains_properly(space, shapely.point_on_surface(faces))
-    thick = shapely.area(faces) > _SLIVER * shapely.length(faces)
-    return [face for face in faces[inside & thick] if isinstance(face, shapely.Polygon)]
-
-
-def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
