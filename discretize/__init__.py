@@ -1,5 +1,6 @@
 """Floor plan to convex cells, portals and cell graph."""
 
+from discretize.bounds import Certificate, certify
 from discretize.cellmap import CellMap, Portal, graph_components
 from discretize.cells_geojson import read_cells, write_cells
 from discretize.checks import CellReport, check_cells
@@ -12,9 +13,11 @@ __all__ = [
     "METHODS",
     "CellMap",
     "CellReport",
+    "Certificate",
     "DiscretizeError",
     "Method",
     "Portal",
+    "certify",
     "check_cells",
     "convex_cells",
     "exact_cells",

@@ -14,6 +14,7 @@ from discretize.checks import cover_problems
 from discretize.cutting import connect_cells
 from discretize.errors import DiscretizeError
 from discretize.numbering import number_cells
+from discretize.routes import ways_of
 from maps import FloorPlan, Label
 
 __all__ = ["read_cells", "write_cells"]
@@ -115,7 +116,7 @@ def read_cells(path: Path, plan: FloorPlan, *, radius: float = 0.2) -> CellMap:
     wrong = cover_problems(plan, cells)
     if wrong:
         raise DiscretizeError(f"{path}: {wrong[0]}")
-    return connect_cells(plan, cells, names, radius=radius, method="file")
+    return connect_cells(plan, cells, names, ways_of(plan.space, radius), "file")
 
 
 def _feature(geometry: BaseGeometry, **properties: object) -> dict[str, Any]:

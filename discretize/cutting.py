@@ -11,8 +11,9 @@ from discretize.errors import DiscretizeError
 from discretize.methods import METHODS
 from discretize.numbering import number_cells
 from discretize.portals import find_checkpoints, find_portals
-from discretize.routes import ways_of
+from discretize.routes import Ways, ways_of
 from discretize.sharing import shared_segments
+from discretize.splitting import split_bottlenecks
 from maps import FloorPlan, nearest
 
 __all__ = ["blocked_doors", "connect_cells", "convex_cells"]
@@ -42,12 +43,13 @@ def convex_cells(plan: FloorPlan, *, method: str = "exact", radius: float = 0.2)
         raise DiscretizeError(f"There is no method {method!r} to cut a plan into cells; {nearest(method, METHODS)}")
     if not (isfinite(radius) and radius > 0):
         raise DiscretizeError(f"The radius of a body must be a positive length in metres, not {radius!r}.")
-    cells, names = number_cells(METHODS[method].cut(plan), plan.labels)
-    return connect_cells(plan, cells, names, radius=radius, method=method)
+    ways = ways_of(plan.space, radius)
+    cells, names = number_cells(split_bottlenecks(METHODS[method].cut(plan), ways.tight), plan.labels)
+    return connect_cells(plan, cells, names, ways, method)
 
 
 def connect_cells(
-    plan: FloorPlan, cells: Sequence[shapely.Polygon], names: Sequence[str], *, radius: float, method: str
+    plan: FloorPlan, cells: Sequence[shapely.Polygon], names: Sequence[str], ways: Ways, method: str
 ) -> CellMap:
     """Find checkpoints, portals and routes of given cells.
 
@@ -59,8 +61,8 @@ def connect_cells(
         N cells in their order, metres.
     names : sequence of str
         One for each.
-    radius : float
-        Radius of the largest body that will use the map, metres.
+    ways : Ways
+        Where the largest body that will use the map can be.
     method : str
         Where the cells come from.
 
@@ -69,16 +71,17 @@ def connect_cells(
     DiscretizeError
         If the body fits nowhere, through none of the plan's doors, or from no cell into another.
     """
-    ways = ways_of(plan.space, radius)
+    radius = ways.tight.radius
     if not ways.tight.parts:
         raise DiscretizeError(f"A body {2 * radius:.3g} m across does not fit anywhere in plan {plan.name!r}.")
     checkpoints = find_checkpoints(cells, ways)
     portals = find_portals(cells, checkpoints, ways)
     closed = len(blocked_doors(plan, portals)) == len(plan.doors) > 0
-    if closed or (len(cells) > 1 and not portals):
+    widest = 0.0 if portals and not closed else _widest(plan, cells)
+    if widest > 0:  # where no two cells touch there is no passage that could be wider
         raise DiscretizeError(
             f"A body {2 * radius:.3g} m across fits through no {'door' if plan.doors else 'passage'} of plan "
-            f"{plan.name!r}: the widest is {_widest(plan, cells):.3g} m."
+            f"{plan.name!r}: the widest is {widest:.3g} m."
         )
     checkpoints.setflags(write=False)
     return CellMap(plan, tuple(cells), portals, checkpoints, radius, method, tuple(names))

@@ -9,7 +9,7 @@ from math import hypot
 
 import shapely
 
-from discretize.triangulation import Triangulation, Vertex, orientation, triangulate
+from discretize.triangulation import Triangulation, Vertex, orientation, triangulate, turns_left
 from maps import FloorPlan
 
 __all__ = ["exact_cells"]
@@ -61,7 +61,7 @@ def _merge(mesh: Triangulation, order: _Order) -> list[list[int]]:
 
     def convex_without(h: int, t: int) -> bool:
         a, b = origin[before[h]], origin[after[after[t]]]
-        return a != b and _turns_left(at[a], at[origin[h]], at[b])
+        return a != b and turns_left(at[a], at[origin[h]], at[b])
 
     reflex = _reflex(mesh, side)
     inner = [h for h in range(n) if twin[h] > h and (min(e := _ends(origin, after, h)), max(e)) not in mesh.doors]
@@ -80,16 +80,6 @@ def _merge(mesh: Triangulation, order: _Order) -> list[list[int]]:
                 before[after[b]] = before[a]
             gone[h] = gone[t] = True
     return _faces(origin, after, gone)
-
-
-def _turns_left(a: Vertex, b: Vertex, c: Vertex) -> bool:
-    """Tell whether the way from a over b to c keeps left or goes straight.
-
-    A vertex that a door has put on a slanted wall lies up to a step of the integers (1e-12 m) beside it; that much is
-    straight. On the grid of one millimetre the test is exact: there no turn is that slight.
-    """
-    steps = abs(b[0] - a[0]) + abs(b[1] - a[1]) + abs(c[0] - b[0]) + abs(c[1] - b[1])
-    return orientation(a, b, c) >= -steps
 
 
 def _ends(origin: Sequence[int], after: Sequence[int], h: int) -> tuple[int, int]:

@@ -21,8 +21,8 @@ _QUADRANT = 16
 _LONGEST_CHORD = 1.5 * pi / (2 * _QUADRANT)
 """Angle of the longest chord that GEOS draws: it rounds the number of chords of an arc to the nearest, radians."""
 
-_SPECK = 1e-4
-"""A place in which a body can stand but not move by a centimetre is no part of the reach, square metres."""
+_SPECK = 0.05
+"""A place in which a body can stand but hardly move is no part of the reach beside a larger one, square metres."""
 
 _SHORT = 1e-6
 """Openings shorter than this are none, metres."""
@@ -60,6 +60,13 @@ class Reach:
         shapely.prepare(skin)
         return skin
 
+    @cached_property
+    def _rind(self) -> BaseGeometry:
+        """Boundary of the skin; whether a line meets it is much quicker to tell than whether a polygon covers it."""
+        rind = self._skin.boundary
+        shapely.prepare(rind)
+        return rind
+
     def part_of(self, points: NDArray[np.float64]) -> NDArray[np.intp]:
         """Part that holds each point, shape (k,); -1 where a body cannot be.
 
@@ -76,7 +83,8 @@ class Reach:
 
     def allows(self, ways: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Tell for each straight way, shape (k, 2, 2), whether a body can go along it without touching a wall."""
-        return np.asarray(shapely.covers(self._skin, shapely.linestrings(ways)), dtype=np.bool_)
+        inside = shapely.contains_xy(self._skin, ways[:, 0, 0], ways[:, 0, 1])
+        return np.asarray(inside & ~shapely.intersects(self._rind, shapely.linestrings(ways)), dtype=np.bool_)
 
     def within(self, cell: shapely.Polygon) -> BaseGeometry:
         """Return the part of a cell in which a body can be."""
@@ -114,33 +122,31 @@ class Reach:
         owner, low, high = owner[open_], low[open_], high[open_]
         return owner, np.stack([_along(segments[owner], low), _along(segments[owner], high)], axis=1)
 
-    def way(self, start: NDArray[np.float64], goal: NDArray[np.float64]) -> NDArray[np.float64] | None:
-        """Shortest way for a body's centre, found among ever more corners around.
+    def way(
+        self, start: NDArray[np.float64], goal: NDArray[np.float64], margin: float = np.inf
+    ) -> NDArray[np.float64] | None:
+        """Shortest way for a body's centre.
 
         Parameters
         ----------
         start, goal : ndarray, shape (2,)
             Metres.
+        margin : float
+            The way may bend around corners this far beyond the rectangle that start and goal span, metres.
 
         Returns
         -------
         ndarray, shape (k, 2), or None
-            None where there is no way.
+            None where there is no such way.
         """
         if self.allows(np.stack([start, goal])[None])[0]:
             return np.stack([start, goal])
         part = self.part_of(np.stack([start, goal]))
         if part[0] < 0 or part[0] != part[1]:
             return None
-        corners = self._corners
-        margin = float(np.hypot(*(goal - start))) + 4 * self.radius
-        low, high = np.minimum(start, goal), np.maximum(start, goal)
-        while True:
-            near = ((corners >= low - margin) & (corners <= high + margin)).all(axis=1)
-            way = self._by_corners(np.concatenate([start[None], goal[None], corners[near]]))
-            if way is not None or near.all():
-                return way
-            margin *= 3
+        low, high = np.minimum(start, goal) - margin, np.maximum(start, goal) + margin
+        near = ((self._corners >= low) & (self._corners <= high)).all(axis=1)
+        return self._by_corners(np.concatenate([start[None], goal[None], self._corners[near]]))
 
     def _by_corners(self, nodes: NDArray[np.float64]) -> NDArray[np.float64] | None:
         """Shortest way from the first to the second node over the others: A*, sight looked up as nodes are reached."""
@@ -208,8 +214,9 @@ def reach_of(space: FreeSpace, radius: float) -> Reach:
     """
     space = shapely.set_precision(space, 0)  # a geometry snapped to a grid would have its offsets snapped, too
     shrunk = space.buffer(-radius / cos(_LONGEST_CHORD / 2), quad_segs=_QUADRANT) if radius > 0 else space
-    parts = [p for p in shapely.get_parts(shrunk) if isinstance(p, shapely.Polygon) and p.area > _SPECK]
-    return Reach(radius, tuple(sorted(parts, key=lambda p: (-p.area, p.bounds))))
+    parts = [p for p in shapely.get_parts(shrunk) if isinstance(p, shapely.Polygon) and p.area > 0]
+    parts.sort(key=lambda p: (-p.area, p.bounds))
+    return Reach(radius, tuple(p for k, p in enumerate(parts) if k == 0 or p.area > _SPECK))
 
 
 def _tiles(part: shapely.Polygon) -> list[shapely.Polygon]:

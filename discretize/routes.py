@@ -37,9 +37,14 @@ class Ways:
     roomy: Reach
 
     def way(self, start: NDArray[np.float64], goal: NDArray[np.float64]) -> Leg | None:
-        """Shortest way from place to place, with clearance where possible; None where there is none."""
-        way = self.roomy.way(start, goal)
-        return self.tight.way(start, goal) if way is None else way
+        """Short way from place to place, with clearance where that is no great detour; None where there is none."""
+        near = float(np.hypot(*(goal - start))) + self.tight.radius
+        for margin in (near, 4 * near, np.inf):
+            for reach in (self.roomy, self.tight):
+                way = reach.way(start, goal, margin)
+                if way is not None:
+                    return way
+        return None
 
     def legs(
         self,

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from discretize.errors import DiscretizeError
 from discretize.sharing import segment_tree
+from maps import FloorPlan
 
-__all__ = ["Edge", "Triangulation", "Vertex", "orientation", "triangulate"]
+__all__ = ["Edge", "Triangulation", "Vertex", "door_edges", "orientation", "triangulate", "turns_left"]
 
 Edge = tuple[int, int]
 Vertex = tuple[int, int]
@@ -59,6 +60,16 @@ def orientation(a: Vertex, b: Vertex, c: Vertex) -> int:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
+def turns_left(a: Vertex, b: Vertex, c: Vertex) -> bool:
+    """Tell whether the way from a over b to c keeps left or goes straight.
+
+    A vertex that a door has put on a slanted wall lies up to a step of the integers (1e-12 m) beside it; that much is
+    straight. On the grid of one millimetre the test is exact: there no turn is that slight.
+    """
+    steps = abs(b[0] - a[0]) + abs(b[1] - a[1]) + abs(c[0] - b[0]) + abs(c[1] - b[1])
+    return orientation(a, b, c) >= -steps
+
+
 def triangulate(part: shapely.Polygon, doors: tuple[shapely.LineString, ...]) -> Triangulation:
     """Triangulate a polygon with holes so that every door in it is a chain of edges.
 
@@ -100,6 +111,19 @@ def triangulate(part: shapely.Polygon, doors: tuple[shapely.LineString, ...]) ->
                 if a != b and gap.min(axis=1).max() <= _SNAP:
                     mesh.insert(a, b)
     return Triangulation(xy, grid, mesh.triangles(), frozenset(mesh.fixed))
+
+
+def door_edges(plan: FloorPlan) -> NDArray[np.float64]:
+    """Segments of a plan's doors that part its free space, shape (k, 2, 2), metres; no cell reaches across one.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        Free space and doors.
+    """
+    meshes = [triangulate(part, plan.doors) for part in plan.parts if plan.doors]
+    edges = [mesh.xy[np.array(sorted(mesh.doors), dtype=np.intp).reshape(-1, 2)] for mesh in meshes]
+    return np.concatenate([np.empty((0, 2, 2)), *edges])
 
 
 def _integers(xy: NDArray[np.float64]) -> list[Vertex]:

@@ -5,11 +5,14 @@ from maps.errors import GeomsimError, PlanError, nearest
 from maps.floorplan import FloorPlan, FreeSpace, Label, Repair
 from maps.geojson import read_geojson, write_geojson
 from maps.making import make_plan
-from maps.reading import bundled_names, read_plan
+from maps.reading import FORMATS, Format, bundled_names, read_plan
+from maps.writing import write_plan
 
 __all__ = [
+    "FORMATS",
     "Door",
     "FloorPlan",
+    "Format",
     "FreeSpace",
     "GeomsimError",
     "Label",
@@ -24,4 +27,5 @@ __all__ = [
     "read_geojson",
     "read_plan",
     "write_geojson",
+    "write_plan",
 ]

@@ -14,33 +14,34 @@ Other members, all optional: ``name`` of the plan, ``start``, the numbers of the
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from maps.errors import PlanError, nearest
-from maps.floorplan import FloorPlan, Label, Repair
+from maps.floorplan import FloorPlan, Label
 from maps.making import make_plan
-from maps.units import LocalFrame, looks_like_degrees, metres_per
+from maps.texts import load_json
+from maps.units import ToMetres, frame_of
 
-__all__ = ["geojson_text", "load_json", "parse_geometry", "read_geojson", "write_geojson"]
+__all__ = ["features_of", "geojson_text", "load_geojson", "parse_geometry", "read_geojson", "write_geojson"]
 
 KINDS = ("free", "room", "wall", "obstacle", "door", "label")
 GEOMETRIES = ("Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon", "GeometryCollection")
 
 
-def read_geojson(path: Path, *, name: str = "", source: str = "") -> FloorPlan:
+def read_geojson(path: Path, *, units: str | None = None, name: str = "", source: str = "") -> FloorPlan:
     """Read a floor plan in our own schema.
 
     Parameters
     ----------
     path : Path
         A ``.geojson`` or ``.json`` file.
+    units : str or None
+        Unit of the coordinates if the file names none.
     name : str
         Name of the plan if the file gives none; the stem of the file by default.
     source : str
@@ -52,9 +53,9 @@ def read_geojson(path: Path, *, name: str = "", source: str = "") -> FloorPlan:
         If the file is not GeoJSON, has a kind, unit or geometry that does not belong, or no free space.
     """
     where = source or str(path)
-    data = load_json(path, where)
+    data = load_geojson(path, where)
     free, solid, doors, labels = [], [], [], []
-    for i, (geometry, properties) in enumerate(_features(data, where)):
+    for i, (geometry, properties) in enumerate(features_of(data, where)):
         at = f"{where}: feature {i + 1}"
         kind = properties.get("kind", "label" if geometry.geom_type == "Point" else "free")
         if kind not in KINDS:
@@ -70,7 +71,7 @@ def read_geojson(path: Path, *, name: str = "", source: str = "") -> FloorPlan:
     if not free:
         raise PlanError(f"{where}: there is no free space in it, no polygon of kind 'free' or 'room'.")
 
-    to_metres, scale, repairs = _frame(data, free, where)
+    to_metres, scale, repairs = frame_of(shapely.get_coordinates(free), data.get("units", units), where)
     return make_plan(
         [shapely.transform(g, to_metres) for g in free],
         name=_text(data, "name", where) or name or path.stem,
@@ -83,33 +84,15 @@ def read_geojson(path: Path, *, name: str = "", source: str = "") -> FloorPlan:
     )
 
 
-def load_json(path: Path, where: str) -> dict[str, Any]:
+def load_geojson(path: Path, where: str) -> dict[str, Any]:
     """Load a JSON file whose top is an object; PlanError otherwise."""
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"), parse_constant=_no_number)
-    except OSError as exc:
-        raise PlanError(f"{where}: the file cannot be read ({exc.strerror}).") from exc
-    except UnicodeDecodeError as exc:
-        raise PlanError(f"{where}: the file is not text, so it is not JSON.") from exc
-    except _NotFiniteError as exc:
-        raise PlanError(f"{where}: there is a {exc} in it; coordinates must be finite numbers.") from exc
-    except (json.JSONDecodeError, RecursionError) as exc:
-        place = f" at line {exc.lineno}, column {exc.colno}: {exc.msg}" if isinstance(exc, json.JSONDecodeError) else ""
-        raise PlanError(f"{where}: the file is not valid JSON{place}.") from exc
+    data = load_json(path, where)
     if not isinstance(data, dict):
         raise PlanError(f"{where}: a GeoJSON file is one object, not a {type(data).__name__}.")
     return data
 
 
-class _NotFiniteError(Exception):
-    """Carries the NaN or Infinity that Python's reader would take, though JSON has no such numbers."""
-
-
-def _no_number(constant: str) -> float:
-    raise _NotFiniteError(constant)
-
-
-def _features(data: dict[str, Any], where: str) -> Iterator[tuple[BaseGeometry, dict[str, Any]]]:
+def features_of(data: dict[str, Any], where: str) -> Iterator[tuple[BaseGeometry, dict[str, Any]]]:
     """Yield the geometries of a GeoJSON object with their properties; features without geometry are left out."""
     kind = data.get("type")
     if kind == "FeatureCollection":
@@ -158,23 +141,6 @@ def _close(ring: list[Any]) -> list[Any]:
     return ring if not ring or ring[0] == ring[-1] else [*ring, ring[0]]
 
 
-def _frame(
-    data: dict[str, Any], free: list[BaseGeometry], where: str
-) -> tuple[Callable[[NDArray[np.float64]], NDArray[np.float64]], float, list[Repair]]:
-    """Find out what turns coordinates into metres; also the length of one unit, and the notice if they are degrees."""
-    if "units" in data and data["units"] != "degrees":
-        unit = metres_per(data["units"], where)
-        return lambda xy: xy * unit, unit, []
-    xy = shapely.get_coordinates(free)
-    if "units" not in data and not looks_like_degrees(xy):
-        return lambda xy: xy, 1.0, []
-    longitude, latitude = (xy.min(axis=0) + xy.max(axis=0)) / 2 if np.isfinite(xy).all() else (0.0, 0.0)
-    frame = LocalFrame(float(longitude), float(latitude))
-    place = f"{longitude:.6f}, {latitude:.6f}"
-    message = f"Coordinates are longitude and latitude; the plan is in metres east and north of {place}."
-    return frame.metres, 1.0, [Repair("projected", message, shapely.Point(0, 0))]
-
-
 def _polygonal(geometry: BaseGeometry, at: str, kind: str) -> BaseGeometry:
     if geometry.geom_type not in ("Polygon", "MultiPolygon", "GeometryCollection"):
         raise PlanError(f"{at} is a {geometry.geom_type} of kind {kind!r}; free space is made of polygons.")
@@ -185,7 +151,7 @@ def _solid(
     geometry: BaseGeometry,
     width: object,
     scale: float,
-    to_metres: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    to_metres: ToMetres,
     at: str,
 ) -> BaseGeometry:
     """Make the polygon of a wall or an obstacle, in metres."""

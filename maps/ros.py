@@ -13,15 +13,16 @@ from typing import Any
 
 import numpy as np
 import shapely
-import yaml
 from numpy.typing import NDArray
 
 from maps.errors import PlanError, nearest
 from maps.floorplan import FloorPlan, Repair
 from maps.pictures import read_picture
 from maps.raster import plan_from_mask
+from maps.texts import load_yaml
+from maps.units import check_resolution
 
-__all__ = ["load_yaml", "read_ros"]
+__all__ = ["read_ros"]
 
 MODES = ("trinary", "scale", "raw")
 KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
@@ -48,9 +49,7 @@ def read_ros(path: Path) -> FloorPlan:
     image = data["image"]
     if not isinstance(image, str) or not image:
         raise PlanError(f"{where}: image is {image!r}; it must be the name of a file.")
-    resolution = _number(data, "resolution", where)
-    if not 0 < resolution < 100:
-        raise PlanError(f"{where}: resolution is {resolution}; it must be the size of a pixel, in metres.")
+    resolution = check_resolution(_number(data, "resolution", where), where)
     origin = data.get("origin")
     if not isinstance(origin, list) or len(origin) != 3 or not all(_is_number(v) for v in origin):
         raise PlanError(f"{where}: origin is {origin!r}; it must be a list [x, y, yaw] of three finite numbers.")
@@ -89,23 +88,6 @@ def _saved_as_unknown(
         return np.zeros_like(free), []
     message = f"{unknown.sum()} pixels of value 205, which map_saver writes for unknown, were not taken as free."
     return unknown, [Repair("unknown pixels", message, shapely.GeometryCollection())]
-
-
-def load_yaml(path: Path, where: str) -> dict[str, Any]:
-    """Load a YAML file whose top is a mapping; PlanError otherwise."""
-    try:
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as exc:
-        raise PlanError(f"{where}: the file cannot be read ({exc.strerror}).") from exc
-    except UnicodeDecodeError as exc:
-        raise PlanError(f"{where}: the file is not text, so it is not YAML.") from exc
-    except (yaml.YAMLError, RecursionError) as exc:
-        mark = getattr(exc, "problem_mark", None)
-        place = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        raise PlanError(f"{where}: the file is not valid YAML{place}.") from exc
-    if not isinstance(data, dict):
-        raise PlanError(f"{where}: a map's YAML file is a list of keys and values, not a {type(data).__name__}.")
-    return data
 
 
 def _is_number(value: object) -> bool:

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from maps.errors import PlanError, nearest
+from maps.floorplan import Repair
 
-__all__ = ["METRES", "LocalFrame", "looks_like_degrees", "metres_per"]
+__all__ = ["METRES", "LocalFrame", "ToMetres", "check_resolution", "frame_of", "looks_like_degrees", "metres_per"]
+
+ToMetres = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 METRES = {
     "m": 1.0,
@@ -78,3 +85,44 @@ class LocalFrame:
     def metres(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
         """Turn longitude and latitude, degrees, shape (n, 2), into metres."""
         return (xy - self.place) * self._scale
+
+
+def frame_of(xy: NDArray[np.float64], units: object, where: str) -> tuple[ToMetres, float, list[Repair]]:
+    """Find out what turns coordinates into metres.
+
+    Parameters
+    ----------
+    xy : ndarray, shape (n, 2)
+        The coordinates of the free space.
+    units : str or None
+        Name of their unit, "degrees" for longitude and latitude; None: metres, unless they can only be degrees.
+    where : str
+        What error sentences begin with.
+
+    Returns
+    -------
+    to_metres : callable
+        Takes and returns an array of shape (n, 2).
+    unit : float
+        Length of one unit, metres (degrees: 1, for lengths beside them are in metres).
+    repairs : list of Repair
+        What has to be said about it.
+    """
+    if units is not None and units != "degrees":
+        unit = metres_per(units, where)
+        return lambda xy: xy * unit, unit, []
+    if units is None and not looks_like_degrees(xy):
+        return lambda xy: xy, 1.0, []
+    longitude, latitude = (xy.min(axis=0) + xy.max(axis=0)) / 2 if len(xy) else (0.0, 0.0)
+    frame = LocalFrame(float(longitude), float(latitude))
+    place = f"{longitude:.6f}, {latitude:.6f}"
+    message = f"Coordinates are longitude and latitude; the plan is in metres east and north of {place}."
+    return frame.metres, 1.0, [Repair("projected", message, shapely.Point(0, 0))]
+
+
+def check_resolution(resolution: object, where: str) -> float:
+    """Return a resolution as a number; PlanError unless it is the size of a pixel or of a unit in metres."""
+    number = isinstance(resolution, int | float) and not isinstance(resolution, bool) and math.isfinite(resolution)
+    if not number or not 0 < float(resolution) < 100:  # type: ignore[arg-type]
+        raise PlanError(f"{where}: resolution is {resolution!r}; it must be the size of a pixel, in metres.")
+    return float(resolution)  # type: ignore[arg-type]

@@ -1,12 +1,19 @@
 """What several tests share."""
 
+import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from discretize import CellMap, convex_cells
 from geomsim import Episode, Team, run_episode
 from maps import read_plan
+
+# The same examples on every machine, so that a failure is a change's doing; HYPOTHESIS_PROFILE=explore tries new ones.
+settings.register_profile("repeat", derandomize=True)
+settings.register_profile("explore", print_blob=True)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeat"))
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 

@@ -61,6 +61,8 @@ def discretize(
         "convexity": report.convexity,
         "free_components": report.free_components,
         "graph_components": report.graph_components,
+        "pockets": list(report.pockets),
+        "blocked_doors": list(report.blocked_doors),
         "problems": list(report.problems),
         "repairs": [repair.message for repair in place.repairs],
         "seconds": seconds,
@@ -73,6 +75,10 @@ def discretize(
     say(f"{place.name}: {len(cells)} cells, {len(cells.portals)} portals, {report.area:.1f} m2, {seconds:.2f} s")
     say(f"covered {report.coverage:.9f}, overlap {report.overlap:.1e}, least convexity {report.convexity:.6f}")
     say(f"connected parts of the free space: {report.free_components}, of the cell graph: {report.graph_components}")
+    if report.pockets:
+        say(f"cells that a robot of radius {radius:g} m cannot enter: {len(report.pockets)}")
+    if report.blocked_doors:
+        say(f"doors that it cannot pass: {', '.join(map(str, report.blocked_doors))}")
     for sentence in (*report.problems, *(repair.message for repair in place.repairs)):
         say(f"  {sentence}")
     for kind, path in files.items():
