@@ -4,6 +4,7 @@ import numpy as np
 
 from geomsim.drawing.scale import ProbabilityScale, percent, round_number
 from geomsim.drawing.surface import Align, Surface
+from geomsim.drawing.text import text_width
 from geomsim.drawing.theme import Theme
 from geomsim.drawing.viewport import Box
 
@@ -17,7 +18,8 @@ def draw_colour_bar(surface: Surface, box: Box, scale: ProbabilityScale, theme: 
     for a sixteenth of the top.
     """
     size = 12 * unit
-    surface.text(title, (box.left, box.top + 8 * unit), size, theme.muted)
+    fitting = size * min(1.0, box.width / text_width(title, size))
+    surface.text(title, (box.left, box.top + 8 * unit), fitting, theme.muted)
     top, bottom = round(box.top + 20 * unit), round(box.top + 33 * unit)
     surface.strip(Box(box.left, top, box.right, bottom), theme.ramp)
     frame = np.array([[box.left, top], [box.right - 1, top], [box.right - 1, bottom - 1], [box.left, bottom - 1]])
