@@ -5,6 +5,8 @@ from planners.belief import advance, point_belief, uniform_belief
 from planners.capture import CaptureError, CaptureModel, SameCell
 from planners.conformance import ConformanceError, check_policy
 from planners.costs import COSTS, Cost, CostError, Hops, find_cost
+from planners.edgelist import read_edge_list, unit_problem
+from planners.evaluation import Prediction, lower_bounds, predict
 from planners.graph import GraphError, SearchGraph
 from planners.lookahead import Decoupled, PlannerError
 from planners.motion import (
@@ -17,11 +19,14 @@ from planners.motion import (
 )
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
 from planners.registry import PLANNERS, PlannerEntry, make_planner
+from planners.team import Beam
+from planners.walks import TooLargeError
 
 __all__ = [
     "COSTS",
     "PLANNERS",
     "AreaSpeedDegree",
+    "Beam",
     "CaptureError",
     "CaptureModel",
     "ConformanceError",
@@ -37,6 +42,7 @@ __all__ = [
     "PlannerEntry",
     "PlannerError",
     "Policy",
+    "Prediction",
     "PursuerState",
     "Random",
     "SameCell",
@@ -45,12 +51,17 @@ __all__ = [
     "SearchState",
     "Stationary",
     "StationaryMotion",
+    "TooLargeError",
     "UniformMotion",
     "advance",
     "check_policy",
     "check_transition",
     "find_cost",
+    "lower_bounds",
     "make_planner",
     "point_belief",
+    "predict",
+    "read_edge_list",
     "uniform_belief",
+    "unit_problem",
 ]

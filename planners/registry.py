@@ -11,6 +11,7 @@ from maps import nearest
 from planners.baselines import Random, Stationary
 from planners.lookahead import Decoupled, PlannerError
 from planners.policy import Planner
+from planners.team import Beam
 
 __all__ = ["PLANNERS", "PlannerEntry", "make_planner"]
 
@@ -38,7 +39,7 @@ class PlannerEntry:
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """Names of what it takes besides nothing: none, or some of ``cost`` and ``depth``."""
+        """Names of what it takes, such as ``cost`` and ``depth``."""
         return tuple(f.name for f in fields(self.make))  # type: ignore[arg-type]  # every planner is a dataclass
 
 
@@ -52,6 +53,12 @@ PLANNERS: Mapping[str, PlannerEntry] = _table(
         Decoupled,
         "each robot searches all its paths to a depth while the others stand still",
         "the paper, Algorithm 1 and Section IV-E",
+    ),
+    PlannerEntry(
+        "beam",
+        Beam,
+        "the team plans jointly for a long time ahead, by beam search on its expected time to capture",
+        "after the paper; judged against sequential allocation and branch and bound in the benchmark",
     ),
     PlannerEntry("random", Random, "each robot goes to a random neighbouring cell", "the paper, Section V-A"),
     PlannerEntry("stationary", Stationary, "each robot stays in its starting cell", "the paper, Section V-A"),

@@ -124,7 +124,7 @@ def test_parameters_reach_the_planner():
     ("name", "parameters", "error", "message"),
     [
         ("decupled", {}, PlannerError, "no planner 'decupled'; did you mean 'decoupled'"),
-        ("random", {"depth": 3}, PlannerError, "'random' takes no parameter; got depth = 3"),
+        ("stationary", {"depth": 3}, PlannerError, "'stationary' takes no parameter; got depth = 3"),
         ("decoupled", {"beam": 3}, PlannerError, "takes cost and depth; got beam = 3"),
         ("decoupled", {"depth": 0}, PlannerError, "at least 1; got 0"),
         ("decoupled", {"cost": "entropie"}, CostError, "did you mean 'entropy'"),
