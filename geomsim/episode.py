@@ -157,3 +157,10 @@ class Episode:
         from geomsim.replay import write_replay
 
         return write_replay(self, Path(path))
+
+    def _repr_png_(self) -> bytes:
+        """Return snapshots for a notebook."""
+        from geomsim.drawing import Picture
+        from geomsim.snapshots import draw_snapshots
+
+        return Picture(draw_snapshots(self, width=1200))._repr_png_()
