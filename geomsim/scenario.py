@@ -52,6 +52,10 @@ class Scenario(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     plan: str = "office"
+    resolution: _Positive | None = None
+    level: str | None = None
+    units: str | None = None
+    structure: bool | None = None
     seed: Annotated[int, Field(ge=0)] = 0
     pursuers: Annotated[int, Field(ge=1, le=1000)] = 2
     start: tuple[int, ...] = ()
@@ -130,7 +134,9 @@ class Scenario(BaseModel):
 
     def place(self) -> tuple[FloorPlan, CellMap]:
         """Read the plan and cut it."""
-        plan = read_plan(self.plan)
+        plan = read_plan(
+            self.plan, resolution=self.resolution, level=self.level, units=self.units, structure=self.structure
+        )
         return plan, convex_cells(plan, method=self.method, radius=max(self.radius, self.evader_radius))
 
     def as_dict(self) -> dict[str, Any]:

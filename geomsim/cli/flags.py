@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from maps import GeomsimError
+from maps import FloorPlan, GeomsimError
 
-__all__ = ["JsonFlag", "OutFlag", "ScenarioFlags"]
+__all__ = ["JsonFlag", "OutFlag", "PlanFlags", "ScenarioFlags"]
 
 JsonFlag = Annotated[bool, Parameter(name="--json", negative="", help="Print one JSON object and nothing else.")]
 OutFlag = Annotated[
@@ -24,7 +24,37 @@ OutFlag = Annotated[
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
-class ScenarioFlags:
+class PlanFlags:
+    """What a floor plan's file may leave open.
+
+    Attributes
+    ----------
+    resolution
+        Size of a pixel, grid cell or drawing unit in metres, for a plan that does not say it.
+    level
+        Storey, of a plan that has several. [default: the largest]
+    units
+        Unit of the coordinates, like mm or ft, for a plan that does not say it.
+    structure
+        Take the furniture out of a scanned map and keep its walls. [default: if it is plainly a scan]
+    """
+
+    resolution: float | None = None
+    level: str | None = None
+    units: str | None = None
+    structure: bool | None = None
+
+    def read(self, plan: str) -> FloorPlan:
+        """Read a floor plan with what was given."""
+        from maps import read_plan
+
+        told = {"resolution": self.resolution, "level": self.level, "units": self.units, "structure": self.structure}
+        return read_plan(plan, **told)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class ScenarioFlags(PlanFlags):
     """The keys of a scenario file; a flag overrides the file. Defaults are those of :class:`geomsim.scenario.Scenario`.
 
     Attributes
