@@ -66,6 +66,7 @@ class Scenario(BaseModel):
     capture: str = "sight"
     range: Annotated[float, Field(gt=0)] = math.inf
     fov_degrees: Annotated[float, Field(gt=0, le=360)] = 360.0
+    detection: Annotated[float, Field(gt=0, le=1)] = 1.0
     speed: _Positive = 1.0
     radius: _Positive = 0.2
     evader: str = "centroid-boundary"
@@ -105,7 +106,7 @@ class Scenario(BaseModel):
             start=self.start,
             speed=self.speed,
             radius=self.radius,
-            sensor=Sensor(self.range, math.radians(self.fov_degrees)),
+            sensor=Sensor(self.range, math.radians(self.fov_degrees), self.detection),
         )
 
     def method_of_planning(self) -> Planner:
@@ -225,6 +226,7 @@ def describe(
         "capture": capture,
         "range": team.sensor.range,
         "fov_degrees": math.degrees(team.sensor.field_of_view),
+        "detection": team.sensor.detection,
         "speed": team.speed,
         "radius": team.radius,
         "evader": kinds.get(type(evader.model), type(evader.model).__name__),

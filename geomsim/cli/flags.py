@@ -82,12 +82,15 @@ class ScenarioFlags(PlanFlags):
         How far a robot sees, metres. [default: without limit]
     fov_degrees
         Field of view of a robot, degrees. [default: 360]
+    detection
+        Probability that a robot notices, within a second, an evader that stays in view. [default: 1]
     speed
         Speed of the robots, metres a second. [default: 1]
     radius
         Radius of the robots, metres. [default: 0.2]
     evader
-        How the evader moves: centroid-boundary or still. [default: centroid-boundary]
+        How the evader moves: centroid-boundary, still, shortest-paths, hiding or fleeing. [default:
+        centroid-boundary]
     evader_start
         Number of the cell in which it starts. [default: a random one]
     evader_speed
@@ -116,6 +119,7 @@ class ScenarioFlags(PlanFlags):
     capture: str | None = None
     range: float | None = None
     fov_degrees: float | None = None
+    detection: float | None = None
     speed: float | None = None
     radius: float | None = None
     evader: str | None = None
