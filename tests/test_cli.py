@@ -130,7 +130,7 @@ def test_a_plan_of_a_persons_own(call, tmp_path: Path) -> None:
     assert code == 0
     told = json.loads(out)
     assert told["captured"]
-    assert told["scenario"]["plan"] == "mine.geojson"
+    assert told["scenario"]["plan"] == str(tmp_path / "mine.geojson")  # holds in any folder
 
 
 @pytest.mark.parametrize("command", ["maps", "planners"])
@@ -195,6 +195,7 @@ def test_interruption_keeps_what_was_finished(tmp_path: Path, name: str) -> None
         [
             sys.executable,
             "-c",
+            "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);"  # a parent may ignore it
             "from geomsim.cli import main; main()",
             *arguments,
             "--time-limit",
@@ -208,11 +209,14 @@ def test_interruption_keeps_what_was_finished(tmp_path: Path, name: str) -> None
         text=True,
         env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
     )
-    while not (tmp_path / "out").exists():  # it is made just before the pursuit begins
-        time.sleep(0.05)
-    time.sleep(1.0)
-    process.send_signal(getattr(signal, name))
-    out, err = process.communicate(timeout=30)
+    try:
+        while not (tmp_path / "out").exists():  # it is made just before the pursuit begins
+            time.sleep(0.05)
+        time.sleep(1.0)
+        process.send_signal(getattr(signal, name))
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert process.returncode == 130, err
     assert err.startswith("geomsim: Interrupted after ")
     assert err.count("\n") == 1

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CycloptsError, UnusedCliTokensError
 
 from geomsim.cli.console import complain
 
@@ -59,6 +59,9 @@ def _explain(exc: Exception) -> int:
 
     if isinstance(exc, GeomsimError):
         complain(str(exc))
+        return 2
+    if isinstance(exc, UnusedCliTokensError):
+        complain(f"Unexpected argument {(exc.unused_tokens or ['?'])[0]!r}.")
         return 2
     if isinstance(exc, CycloptsError):
         complain(" ".join(str(exc).split()))

@@ -26,7 +26,7 @@ def convert(
     Parameters
     ----------
     plan
-        A bundled plan (`geomsim maps` lists them) or a file.
+        A bundled plan or a file; `geomsim maps` lists what there is.
     target
         A new file: .geojson for all that a plan holds, .yaml for a ROS map and its image.
     """

@@ -29,7 +29,7 @@ def discretize(
     Parameters
     ----------
     plan
-        A bundled plan (`geomsim maps` lists them) or a file: GeoJSON, or the YAML of a ROS map.
+        A bundled plan or a file, a GeoJSON or a ROS map for instance; `geomsim maps` lists what there is.
     """
     from json import dumps
 

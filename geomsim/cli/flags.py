@@ -48,8 +48,7 @@ class PlanFlags:
         """Read a floor plan with what was given."""
         from maps import read_plan
 
-        told = {"resolution": self.resolution, "level": self.level, "units": self.units, "structure": self.structure}
-        return read_plan(plan, **told)
+        return read_plan(plan, resolution=self.resolution, level=self.level, units=self.units, structure=self.structure)
 
 
 @Parameter(name="*")
@@ -99,8 +98,12 @@ class ScenarioFlags(PlanFlags):
         Its radius, metres. [default: 0.2]
     motion
         How the robots believe it moves: area-speed-degree, uniform or stationary. [default: area-speed-degree]
+    motion_speed
+        How fast they believe it to be, metres a second. [default: as fast as it is]
     method
         How the plan is cut into cells. [default: exact]
+    clearance
+        Radius of the body for which portals and routes are made, metres. [default: the largest radius]
     time_limit
         When to give up, seconds. [default: 1800]
     belief_step
@@ -127,7 +130,9 @@ class ScenarioFlags(PlanFlags):
     evader_speed: float | None = None
     evader_radius: float | None = None
     motion: str | None = None
+    motion_speed: float | None = None
     method: str | None = None
+    clearance: float | None = None
     time_limit: float | None = None
     belief_step: float | None = None
     physics_step: float | None = None
