@@ -1,4 +1,6 @@
+import json
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ from maps import Door, PlanError, Room, draft_plan, draft_rooms, read_plan
 from maps.drafts import DRAFTS, write_drafts
 from maps.reading import bundled_names
 
+OFFICE = Path(__file__).parents[2].parent / "shared" / "graphs" / "office-60.json"
 HOUSE = {(1, 4), (1, 8), (2, 8), (2, 9), (3, 4), (4, 5), (4, 6), (4, 9), (5, 7), (6, 7)}
 
 
@@ -69,12 +72,31 @@ def test_plan_is_the_union_of_its_rooms(sketch):
     assert set(plan.start) <= set(sketch["cells"])
 
 
-def test_house_has_the_graph_of_the_paper(monkeypatch):
+def doors_of(name, monkeypatch):
     doors = []
     monkeypatch.setattr("maps.drafts.draft_plan", lambda *args, **_: doors.extend(args[2]))
-    DRAFTS["house"]()
-    assert {tuple(sorted(d.rooms)) for d in doors} == HOUSE
+    DRAFTS[name]()
+    return doors, {tuple(sorted(door.rooms)) for door in doors}
+
+
+def test_house_has_the_graph_of_the_paper(monkeypatch):
+    doors, pairs = doors_of("house", monkeypatch)
+    assert pairs == HOUSE
     assert all(0.9 <= d.width <= 1.0 for d in doors)
+
+
+@pytest.mark.skipif(not OFFICE.exists(), reason="needs the published graph")
+def test_office_has_the_published_graph(monkeypatch):
+    doors, pairs = doors_of("office", monkeypatch)
+    assert pairs == {(min(a, b) + 1, max(a, b) + 1) for a, b in json.loads(OFFICE.read_text())["edges"]}
+    assert all(0.9 <= d.width <= 1.0 for d in doors if d.width != 1.6)
+
+
+def test_museum_has_many_cycles_and_wide_doorways(monkeypatch):
+    doors, pairs = doors_of("museum", monkeypatch)
+    assert len(pairs) == len(doors)
+    assert len(pairs) - 64 + 1 >= 20
+    assert all(d.width == 2.0 for d in doors)
 
 
 def test_drafts_are_the_files_that_are_shipped(tmp_path):

@@ -14,15 +14,15 @@ def test_bundled_plans_are_read_by_name(name):
     assert plan.start
 
 
-def test_there_are_a_house_and_an_office():
-    assert {"house", "office"} <= set(bundled_names())
+def test_there_are_a_house_an_office_and_a_museum():
+    assert {"house", "office", "museum"} <= set(bundled_names())
 
 
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
         ("offce", "There is no file offce and no bundled plan of this name; did you mean 'office'?"),
-        ("xyzzy", "no bundled plan of this name; choose one of 'house', 'office'"),
+        ("xyzzy", "no bundled plan of this name; choose one of 'house', 'museum', 'office'"),
         ("nowhere.geojson", "There is no file nowhere.geojson."),
         ("nowhere/map.yaml", "There is no file nowhere/map.yaml."),
         (".", ". is a folder; a floor plan is a file."),
