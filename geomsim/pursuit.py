@@ -105,9 +105,9 @@ def run_episode(
     team_seed : int, optional
         Where the planner's chance comes from, if not from ``seed``; the evader's always comes from ``seed``.
     capture : {"sight", "cell"}
-        What counts as capture, see ``CAPTURE_RULES``.
+        What counts as capture, see ``CAPTURE_RULES``. The belief counts on same-cell capture either way (Section V).
     motion : MotionModel, optional
-        What the pursuers believe of the evader's motion; by default area, speed and degree (Section V).
+        What the pursuers believe of the evader's motion; by default area, degree and its own speed (Section V).
     timing : Timing, optional
         Clocks.
     scenario : dict, optional
@@ -121,9 +121,11 @@ def run_episode(
         If the team cannot be placed, a body is too large for the routes of ``cells``, or a policy breaks its contract.
     """
     team, evader, timing = team or Team(), evader or Evader(), timing or Timing()
+    if plan is not cells.plan and not plan.space.equals(cells.plan.space):
+        raise GeomsimError(f"The cells were made of plan {cells.plan.name!r}, not of {plan.name!r}.")
     check_pursuit(cells, team, evader, capture)
     seeds = seed, seed if team_seed is None else team_seed
-    pursuit = _Pursuit(plan, cells, team, evader, seeds, capture, motion or AreaSpeedDegree(), timing)
+    pursuit = _Pursuit(plan, cells, team, evader, seeds, capture, motion or AreaSpeedDegree(evader.speed), timing)
     outcome = pursuit.run(progress)
     if scenario is None:
         from geomsim.scenario import describe

@@ -99,7 +99,7 @@ def read_record(path: Path) -> Episode:
     except FileNotFoundError as exc:
         raise RecordError(f"There is no episode record {path}.") from exc
     except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError) as exc:
-        raise RecordError(f"{path} is no episode record, or a damaged one: {exc}") from exc
+        raise RecordError(f"{path} is no episode record, or a damaged one.") from exc
     meta = _meta(arrays, path)
     try:
         episode = _episode(arrays, meta)

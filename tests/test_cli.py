@@ -14,6 +14,9 @@ import pytest
 
 from geomsim import Episode
 from geomsim.cli import main
+from geomsim.cli.flags import ScenarioFlags
+from geomsim.scenario import Scenario
+from planners import Decoupled
 
 TWO_ROOMS = {
     "type": "Polygon",
@@ -127,7 +130,7 @@ def test_a_plan_of_a_persons_own(call, tmp_path: Path) -> None:
     assert code == 0
     told = json.loads(out)
     assert told["captured"]
-    assert told["scenario"]["plan"] == "mine.geojson"
+    assert told["scenario"]["plan"] == str(tmp_path / "mine.geojson")  # holds in any folder
 
 
 @pytest.mark.parametrize("command", ["maps", "planners"])
@@ -192,6 +195,7 @@ def test_interruption_keeps_what_was_finished(tmp_path: Path, name: str) -> None
         [
             sys.executable,
             "-c",
+            "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);"  # a parent may ignore it
             "from geomsim.cli import main; main()",
             *arguments,
             "--time-limit",
@@ -205,11 +209,14 @@ def test_interruption_keeps_what_was_finished(tmp_path: Path, name: str) -> None
         text=True,
         env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
     )
-    while not (tmp_path / "out").exists():  # it is made just before the pursuit begins
-        time.sleep(0.05)
-    time.sleep(1.0)
-    process.send_signal(getattr(signal, name))
-    out, err = process.communicate(timeout=30)
+    try:
+        while not (tmp_path / "out").exists():  # it is made just before the pursuit begins
+            time.sleep(0.05)
+        time.sleep(1.0)
+        process.send_signal(getattr(signal, name))
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert process.returncode == 130, err
     assert err.startswith("geomsim: Interrupted after ")
     assert err.count("\n") == 1
@@ -232,3 +239,13 @@ def test_a_foreign_package_of_our_names_is_refused(tmp_path: Path) -> None:
     )
     assert done.returncode != 0
     assert "geomsim needs its own package 'planners'" in done.stderr
+
+
+@pytest.mark.parametrize("key", [key for key, field in Scenario.model_fields.items() if key != "plan"])
+def test_help_tells_defaults(key: str) -> None:
+    doc = " ".join((ScenarioFlags.__doc__ or "").split(f"    {key}\n", 1)[1].split())
+    default = Scenario.model_fields[key].default
+    words = {"start": "the plan's own", "range": "without limit", "evader_start": "a random one"}
+    words |= {"cost": Decoupled().cost, "depth": str(Decoupled().depth)}
+    told = words.get(key, f"{default:g}" if isinstance(default, float) else str(default))
+    assert doc[: doc.index("]") + 1].endswith(f" [default: {told}]"), doc

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CycloptsError, UnusedCliTokensError
 
 from geomsim.cli.console import complain
 
@@ -31,6 +31,7 @@ app.command(
 app.command("geomsim.cli.predict:predict", name="predict", help="Exact expected capture time, without sampling.")
 app.command("geomsim.cli.compare:compare", name="compare", help="Many methods, many trials, the same evaders.")
 app.command("geomsim.cli.render:render", name="render", help="Pictures and video from a saved episode.")
+app.command("geomsim.cli.convert:convert", name="convert", help="A floor plan from one format into another.")
 app.command("geomsim.cli.listing:maps", name="maps", help="The bundled floor plans.")
 app.command("geomsim.cli.listing:planners", name="planners", help="The planners, each with its source.")
 
@@ -59,6 +60,9 @@ def _explain(exc: Exception) -> int:
 
     if isinstance(exc, GeomsimError):
         complain(str(exc))
+        return 2
+    if isinstance(exc, UnusedCliTokensError):
+        complain(f"Unexpected argument {(exc.unused_tokens or ['?'])[0]!r}.")
         return 2
     if isinstance(exc, CycloptsError):
         complain(" ".join(str(exc).split()))

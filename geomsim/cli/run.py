@@ -29,7 +29,7 @@ def run(
     Parameters
     ----------
     plan
-        A bundled plan (`geomsim maps` lists them) or a file: GeoJSON, or the YAML of a ROS map.
+        A bundled plan or a file, a GeoJSON or a ROS map for instance; `geomsim maps` lists what there is.
     """
     from geomsim.episode import Status
     from geomsim.files import output_folder, write_text
@@ -56,6 +56,7 @@ def run(
             scenario=told.as_dict(),
             progress=None if bar is None else lambda time, _: bar(time, told.time_limit),
         )
+    _clear(folder)
     files = {"scenario": write_text(folder / "scenario.toml", told.as_toml())}
     files["record"] = episode.save(folder / "episode.npz")
     if episode.outcome.status is Status.INTERRUPTED:
@@ -79,6 +80,18 @@ def run(
     return 0
 
 
+def _clear(folder: Path) -> None:
+    """Take away what an earlier run left in the folder, which would pass for this one's."""
+    for name in ("scenario.toml", "episode.npz", "snapshots.png", "pursuit.mp4", "replay.html"):
+        (folder / name).unlink(missing_ok=True)
+    for frame in (folder / "frames").glob("frame_*.png"):
+        frame.unlink()
+
+
+def _count(pursuers: int) -> str:
+    return "1 pursuer" if pursuers == 1 else f"{pursuers} pursuers"
+
+
 def _report(episode: Any, files: dict[str, Path], *, json: bool) -> None:
     out = episode.outcome
     if json:
@@ -100,7 +113,7 @@ def _report(episode: Any, files: dict[str, Path], *, json: bool) -> None:
         )
         return
     told = episode.scenario
-    say(f"{episode.plan.name}: {len(episode.cells)} cells, {told['pursuers']} pursuers, seed {told['seed']}")
+    say(f"{episode.plan.name}: {len(episode.cells)} cells, {_count(told['pursuers'])}, seed {told['seed']}")
     where = "" if out.position is None else f", at ({out.position[0]:.1f}, {out.position[1]:.1f}) m"
     say(f"{episode}{where}")
     say(f"chance of capture by then that the belief predicted: {out.predicted:.2f}")

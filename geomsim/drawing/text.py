@@ -1,23 +1,23 @@
 """Text: OpenCV 5 draws real type, OpenCV 4 only strokes; both are measured before they are placed."""
 
 from functools import cache
-from typing import Any, Literal
+from typing import Any
 
 import cv2
+import numpy as np
+from numpy.typing import NDArray
 
 from geomsim.drawing.colours import bgr
-from geomsim.drawing.strokes import Image
+from geomsim.drawing.surface import Align
 
-__all__ = ["Align", "draw_text", "text_width"]
-
-Align = Literal["left", "centre", "right"]
+__all__ = ["draw_text", "text_width"]
 
 # The stroke font of OpenCV 4 knows ASCII only.
 _ASCII = str.maketrans({"·": "-", "\u2013": "-", "\u00d7": "x", "²": "2"})
 
 
 def draw_text(
-    image: Image,
+    image: NDArray[np.uint8],
     text: str,
     at: tuple[float, float],
     size: float,

@@ -1,6 +1,7 @@
 """Videos, frames and contact sheets as files: what is in them, and what is left when writing fails."""
 
 import dataclasses
+import re
 from pathlib import Path
 
 import av
@@ -187,6 +188,23 @@ def test_the_contact_sheet_has_a_panel_for_each_time(episode: Episode, tmp_path:
     evader = (sheet == bgr(THEMES["light"].evader)).all(axis=2).astype(np.uint8)
     grown = cv2.dilate(evader, np.ones((15, 15), np.uint8))  # a letter may cut the diamond in two
     assert cv2.connectedComponents(grown)[0] - 1 == 3
+
+
+@pytest.mark.parametrize("kind", ["svg", "pdf"])
+def test_the_contact_sheet_as_vectors(episode: Episode, tmp_path: Path, kind: str) -> None:
+    options = {"times": [0.0, 12.0], "width": 900}
+    path = write_snapshots(episode, tmp_path / f"s.{kind}", **options)
+    data = path.read_bytes()
+    assert data == write_snapshots(episode, tmp_path / f"t.{kind}", **options).read_bytes()
+    if kind == "pdf":
+        assert data.startswith(b"%PDF")
+        assert data.rstrip().endswith(b"%%EOF")
+        return
+    colours = re.findall(r"fill: (#[0-9a-f]{6})", data.decode())
+    theme = THEMES["light"]
+    assert colours.count(theme.evader) == 2
+    assert colours.count(theme.robot(0)) >= 2
+    assert "date" not in data.decode()
 
 
 @pytest.mark.parametrize("panels", [1, 2, 5, 6, 9])

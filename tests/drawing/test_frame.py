@@ -39,7 +39,8 @@ def test_walls_cells_robots_and_evader_are_where_they_are(episode: Episode, size
     beside = 7.5 * drawer.style.unit / drawer.view.scale
     robot, evader = episode.pursuers[0, 0], episode.evader[0]
     assert near(pixel_at(drawer, image, (robot[0] - beside, robot[1])), colours.robot(0))
-    assert near(pixel_at(drawer, image, (evader[0], evader[1] - beside)), colours.evader)
+    below = 8.2 * drawer.style.unit / drawer.view.scale
+    assert near(pixel_at(drawer, image, (evader[0], evader[1] - below)), colours.evader)
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
