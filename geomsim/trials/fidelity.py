@@ -88,9 +88,9 @@ def forecast(experiment: Experiment, method: int) -> Forecast | None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a linear system without a solution, seen below
         try:
-            told = [ask(team.planner, Streams.of(seed).deciding, _RESIDUE)]
+            told = [ask(team.planner, Streams(seed).deciding, _RESIDUE)]
         except TooLargeError:
-            chance = Streams.of(seed).deciding.spawn(_SAMPLES)
+            chance = Streams(seed).deciding.spawn(_SAMPLES)
             told = [ask(_Unknown(team.planner), rng, 10 * _RESIDUE) for rng in chance]
         except (OverflowError, ValueError):
             return None
