@@ -16,7 +16,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ import pymunk
 from discretize import CellMap, convex_cells
 from geomsim import Evader, Random, Sensor, Team, Timing
 from geomsim.trials.bank import Bank, meet
+from geomsim.trials.episodes import run_episodes
 from geomsim.trials.experiment import Experiment
 from geomsim.trials.kernels import _free, _grid
 from geomsim.trials.methods import Method
@@ -69,19 +71,34 @@ def share(told: Experiment, runs: list[TeamRun], steps: int) -> float:
     everyone = range(told.trials)
 
     def work() -> None:
-        for first in range(0, told.trials, 250):
-            block = list(everyone)[first : first + 250]
-            free = {m: block for m in range(len(runs))}
+        for first in range(0, told.trials, 500):
+            block = list(everyone)[first : first + 500]
+            free = dict.fromkeys(range(len(runs)), block)
             meet(told, {m: [run] for m, run in enumerate(runs)}, free, steps)
 
     return spent(work)[0]
 
 
-def own_space(told: Experiment, run: TeamRun, track: np.ndarray, steps: int, stop: bool) -> int:
-    """One trial in a pymunk space of its own: four bodies driven by force, rays to the evader from three of them.
+def stroll(routes: Routes, cell: int, rng: np.random.Generator) -> Iterator[tuple[float, float]]:
+    """Where a body that wanders should be at each step."""
+    way = 0.0
+    while True:
+        cell, last = int(rng.choice(routes.neighbours[cell])), cell
+        route = routes.between(last, cell)
+        points, marks, leg = route.points.tolist(), route.marks.tolist(), 0
+        while way < marks[-1]:
+            while marks[leg + 1] <= way:
+                leg += 1
+            share = (way - marks[leg]) / (marks[leg + 1] - marks[leg])
+            (ax, ay), (bx, by) = points[leg], points[leg + 1]
+            yield ax + share * (bx - ax), ay + share * (by - ay)
+            way += DT
+        way -= marks[-1]
 
-    Bodies are driven to where they are known to go, so that neither planning nor route following is counted.
-    """
+
+def own_space(told: Experiment, routes: Routes, trial: int, steps: int, stop: bool) -> int:
+    """One trial in a pymunk space of its own: three robots and an evader that wander, rays between them."""
+    rng = np.random.default_rng(trial)
     space = pymunk.Space()
     space.collision_slop = 0.001
     wall, ray = pymunk.ShapeFilter(categories=2), pymunk.ShapeFilter(mask=2)
@@ -89,18 +106,18 @@ def own_space(told: Experiment, run: TeamRun, track: np.ndarray, steps: int, sto
         segment = pymunk.Segment(space.static_body, tuple(a), tuple(b), 0.0)
         segment.filter = wall
         space.add(segment)
-    way = np.concatenate([run.eyes[: steps + 1], track[: steps + 1, np.newaxis]], axis=1).tolist()
-    bodies = []
-    for x, y in way[0]:
+    bodies, walks = [], []
+    for cell in (*told.starts, told.hideouts[trial]):
         body = pymunk.Body(1.0, float("inf"))
-        body.position = x, y
+        body.position = tuple(told.cells.checkpoints[cell].tolist())
         disc = pymunk.Circle(body, 0.2)
         disc.filter = pymunk.ShapeFilter(categories=1, mask=2)
         space.add(body, disc)
         bodies.append(body)
-    for t in range(1, steps + 1):
-        for body, (x, y) in zip(bodies, way[t], strict=True):
-            (px, py), (vx, vy) = body.position, body.velocity
+        walks.append(stroll(routes, cell, rng))
+    for t in range(steps):
+        for body, walk in zip(bodies, walks, strict=True):
+            (x, y), (px, py), (vx, vy) = next(walk), body.position, body.velocity
             ux, uy = (x - px - vx * DT) / DT, (y - py - vy * DT) / DT
             body.force = (ux - vx) / DT, (uy - vy) / DT
         space.step(DT)
@@ -112,21 +129,21 @@ def own_space(told: Experiment, run: TeamRun, track: np.ndarray, steps: int, sto
 
 
 @numba.njit
-def _bare(
-    walls, first, members, x0, y0, size, columns, rows, eyes, lines, marks, ends, ways, count, starts, steps, seed
-):
+def _bare(grid, eyes, lines, marks, ends, ways, count, starts, steps, dice):
     """Trials without physics: points on polylines, the next one at random, and three rays a step."""
-    np.random.seed(seed)
-    seen = 0
+    walls, first, members, x0, y0, size, columns, rows = grid
+    seen, thrown = 0, 0
     for k in range(len(starts)):
-        edge = ways[starts[k], np.random.randint(count[starts[k]])]
+        edge = ways[starts[k], dice[thrown % len(dice)] % count[starts[k]]]
+        thrown += 1
         way, leg = 0.0, 0
         for t in range(steps):
             way += 0.1
             last = marks[edge, -1]
             if way >= last:
                 way -= last
-                edge = ways[ends[edge], np.random.randint(count[ends[edge]])]
+                edge = ways[ends[edge], dice[thrown % len(dice)] % count[ends[edge]]]
+                thrown += 1
                 leg = 0
             while marks[edge, leg + 1] <= way:
                 leg += 1
@@ -159,9 +176,10 @@ def bare(told: Experiment, run: TeamRun, steps: int) -> float:
     count = np.array([len(row) for row in routes.neighbours])
     ends, starts = np.array([j for _, j in pairs]), np.array(told.hideouts)
     grid = _grid(WallGrid.of(cells.plan.walls))
+    dice = np.random.default_rng(1).integers(0, 2**31, 1_000_000)
     rest = (run.eyes, lines, marks, ends, ways, count)
-    _bare(*grid, *rest, starts[:2], 5, 1)
-    return spent(lambda: _bare(*grid, *rest, starts, steps, 1))[0]
+    _bare(grid, *rest, starts[:2], 5, dice)
+    return spent(lambda: _bare(grid, *rest, starts, steps, dice))[0]
 
 
 def rvo(told: Experiment, agents: int, steps: int) -> float | None:
@@ -177,18 +195,26 @@ def rvo(told: Experiment, agents: int, steps: int) -> float | None:
             points = points if ring.is_ccw != outer else points[::-1]  # free space lies to the right of a wall
             sim.add_obstacle([tuple(p) for p in points.tolist()])
     sim.process_obstacles()
-    rng = np.random.default_rng(1)
+    rng, routes = np.random.default_rng(1), Routes(told.cells)
     places = _places(told, agents, rng)
-    for place in places:
-        sim.add_agent(tuple(place.tolist()))
-    angle = rng.uniform(0, math.tau, agents)
-    wishes = [(math.cos(a), math.sin(a)) for a in angle]
+    cells = told.cells.locate(places).tolist()
+    todo: list[list[tuple[float, float]]] = []
+    for place, cell in zip(places.tolist(), cells, strict=True):
+        sim.add_agent(tuple(place))
+        todo.append([tuple(routes.checkpoint(cell).tolist())])
 
     def work() -> None:
-        for t in range(steps):
-            if t % 50 == 0:
-                for k, wish in enumerate(wishes):
-                    sim.set_agent_pref_velocity(k, wish)
+        for _ in range(steps):
+            for k, corners in enumerate(todo):  # each agent heads for the next corner of its route
+                at = sim.get_agent_position(k)
+                dx, dy = corners[-1][0] - at.x, corners[-1][1] - at.y
+                gap = math.hypot(dx, dy)
+                if gap < 0.3 and len(corners) > 1:
+                    corners.pop()
+                elif gap < 0.3:
+                    cells[k], last = int(rng.choice(routes.neighbours[cells[k]])), cells[k]
+                    corners[:] = [tuple(p) for p in routes.between(last, cells[k]).points[:0:-1].tolist()]
+                sim.set_agent_pref_velocity(k, (dx / max(gap, 1e-9), dy / max(gap, 1e-9)))
             sim.do_step()
 
     return spent(work)[0]
@@ -230,9 +256,11 @@ def _places(told: Experiment, count: int, rng: np.random.Generator) -> np.ndarra
     x0, y0, x1, y1 = told.cells.plan.bounds
     points = rng.uniform((x0, y0), (x1, y1), size=(400 * count, 2))
     points = points[shapely.contains_xy(free, *points.T)]
-    kept = list(dict.fromkeys(map(tuple, np.round(points / 0.5).astype(int).tolist())))[:count]
-    chosen = np.array(kept) * 0.5
-    return chosen[shapely.contains_xy(told.cells.plan.space, *chosen.T)]
+    chosen = np.unique(np.round(points / 0.5), axis=0) * 0.5
+    chosen = chosen[shapely.contains_xy(told.cells.plan.space.buffer(-0.2), *chosen.T)]
+    if len(chosen) < count:
+        raise SystemExit(f"There is no room for {count} bodies in {told.cells.plan.name}.")
+    return rng.permutation(chosen)[:count]
 
 
 def looking(cells: CellMap, quick: bool) -> list[dict[str, Any]]:
@@ -243,12 +271,14 @@ def looking(cells: CellMap, quick: bool) -> list[dict[str, Any]]:
     share(told, run_team(told, 0, [0], 20), 20)  # compiled by now
     team, (run,) = spent(lambda: run_team(told, 0, [0], steps))
     ours = 1000 * steps / (team + share(told, [run], steps))
-    bank = Bank(told, range(few)).reel(steps).positions.astype(float)
-    alone = spent(lambda: [own_space(told, run, bank[:, k], steps, stop=False) for k in range(few)])[0]
+    routes = Routes(cells)
+    alone = spent(lambda: [own_space(told, routes, k, steps, stop=False) for k in range(few)])[0]
     lone = few * steps / alone
     limit = 1000 * steps / bare(told, run, steps)
+    episodes = spent(lambda: run_episodes(told, 0, list(range(2))))[0]
     return [
-        row("steps of a trial with sight", ours, "one space for each trial", lone, 50),
+        row("steps of a trial with sight", ours, "one bare space for each trial", lone, 50),
+        row("steps of a trial with sight", ours, "the separate engine", 2 * steps / episodes, 50),
         row("steps of a trial with sight", ours, "compiled, without physics", limit, 0.2),
     ]
 
@@ -257,9 +287,7 @@ def moving(cells: CellMap, quick: bool) -> list[dict[str, Any]]:
     """Steps of a body a second, against programs that move crowds."""
     steps, theirs = (300, 20) if quick else (1500, 60)
     told = experiment(cells, 1000, 300.0)
-    ours = sum(
-        spent(lambda first=first: Bank(told, range(first, first + 250)).reel(steps))[0] for first in (0, 250, 500, 750)
-    )
+    ours = sum(spent(lambda first=first: Bank(told, range(first, first + 500)).reel(steps))[0] for first in (0, 500))
     rows = []
     for name, peer, least in (("pyrvo", rvo, 10), ("JuPedSim", jupedsim, 40)):
         took = peer(told, 1000, theirs)
@@ -270,15 +298,15 @@ def moving(cells: CellMap, quick: bool) -> list[dict[str, Any]]:
 
 def ten_methods(cells: CellMap, quick: bool) -> list[dict[str, Any]]:
     """Ten methods, 1000 trials, 300 s, until capture."""
-    seconds, few = (60.0, 3) if quick else (300.0, 8)
+    seconds, few = (60.0, 20) if quick else (300.0, 60)
     steps = round(seconds / DT)
     told = experiment(cells, 1000, seconds, methods=10)
-    runs = [run_team(told, m, [m], steps)[0] for m in range(10)]
+    runs = [replace(run_team(told, m, [m], steps)[0], run=0) for m in range(10)]
     share(told, [run.cut(20, sight=True) for run in runs], 20)
     ours = 10_000 / share(told, runs, steps)
-    bank = Bank(told, range(few)).reel(steps).positions.astype(float)
-    alone, _ = spent(lambda: [own_space(told, run, bank[:, k], steps, stop=True) for run in runs for k in range(few)])
-    return [row("trials of ten methods", ours, "one space for each trial", 10 * few / alone, 30)]
+    routes = Routes(cells)
+    alone = spent(lambda: [own_space(told, routes, k, steps, stop=True) for k in range(few)])[0]
+    return [row("trials of ten methods", ours, "one bare space for each trial", few / alone, 30)]
 
 
 def figure_5(quick: bool) -> list[dict[str, Any]]:
