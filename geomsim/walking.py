@@ -159,6 +159,7 @@ class Walkers:
     def __init__(self, speeds: NDArray[np.float64], starts: Sequence[Route]) -> None:
         k = len(starts)
         self.speeds = np.array(speeds, dtype=np.float64)
+        self._squares = self.speeds**2
         self.aim, self.idle, self._length, self._crossing = np.zeros(k), np.zeros(k), np.zeros(k), np.zeros(k)
         self._begins, self.ends = np.zeros(k, dtype=np.int32), np.zeros(k, dtype=np.int32)
         # polylines, padded to the longest one met so far: points, ways to them, metres of x and y a metre of way
@@ -199,10 +200,13 @@ class Walkers:
     def advance(self, positions: NDArray[np.float64], velocities: NDArray[np.float64], dt: float) -> None:
         """Move the aims on by one step, but for bodies that are held up; both arrays of shape (K, 2)."""
         self._coasting = positions + velocities * dt
-        off = self._coasting - self._next
-        going = np.hypot(off[:, 0], off[:, 1]) <= self.PATIENCE
-        self.aim += np.where(going, self.speeds * dt, 0.0)
-        self.idle = np.where(going, 0.0, self.idle + dt)
+        going = _squares(self._coasting - self._next) <= self.PATIENCE**2
+        if going.all():
+            self.aim += self.speeds * dt
+            self.idle[:] = 0.0
+        else:
+            self.aim += np.where(going, self.speeds * dt, 0.0)
+            self.idle = np.where(going, 0.0, self.idle + dt)
 
     def wanted(self, dt: float) -> NDArray[np.float64]:
         """Return the velocities that bring the bodies to the aims, at most their speeds; (K, 2), metres a second.
@@ -216,15 +220,26 @@ class Walkers:
         self._now, self._next = self._next, aims
         self.cells, self._next_cells = self._next_cells, self.aimed_cells
         wanted: NDArray[np.float64] = (aims - self._coasting) / dt
-        fast = np.hypot(wanted[:, 0], wanted[:, 1])
-        over = fast > self.speeds
+        fast = _squares(wanted)
+        over = fast > self._squares
         if over.any():
-            wanted[over] *= (self.speeds[over] / fast[over])[:, np.newaxis]
+            wanted[over] *= np.sqrt(self._squares[over] / fast[over])[:, np.newaxis]
         return wanted
 
     def keep(self, which: NDArray[np.intp]) -> None:
         """Go on with some of the walkers only, given by their indices in rising order."""
-        for name in ("speeds", "aim", "idle", "_length", "_crossing", "_begins", "ends", "cells", "_next_cells"):
+        for name in (
+            "speeds",
+            "_squares",
+            "aim",
+            "idle",
+            "_length",
+            "_crossing",
+            "_begins",
+            "ends",
+            "cells",
+            "_next_cells",
+        ):
             setattr(self, name, getattr(self, name)[which])
         for name in ("_piece", "_corner", "_slope", "_from", "_until", "_now", "_next", "_coasting"):
             setattr(self, name, getattr(self, name)[which])
@@ -252,3 +267,9 @@ class Walkers:
         at = piece[which]
         self._corner[which], self._slope[which] = self._points[which, at], self._slopes[which, at]
         self._from[which], self._until[which] = self._marks[which, at], self._marks[which, at + 1]
+
+
+def _squares(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the squared lengths of K vectors; element by element, so that K changes no bit of any."""
+    each = vectors * vectors
+    return each[:, 0] + each[:, 1]

@@ -82,9 +82,7 @@ def _table(trials: Trials) -> tuple[tuple[str, ...], Cells]:
 
 def _about(part: Part, trials: Trials) -> str:
     told = trials.summary()
-    tau = (
-        "" if told.rank_correlation is None else f" Kendall's tau, predicted and observed: {told.rank_correlation:.2f}."
-    )
+    tau = told.rank_correlation
     return (
         f"{part.about} {told.trials} trials a method, {trials.engine} engine, {trials.wall_crossings} moves through "
         "walls." + ("" if tau is None else f" Kendall's tau between predicted and observed means: {tau:.2f}.")
