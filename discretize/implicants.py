@@ -21,6 +21,9 @@ CONVEXITY = 0.9
 _NOTCH = 0.1
 """Deepest notch in a union: no corner of it lies further inside its convex hull, metres."""
 
+_PIN = 1e-9
+"""A smaller hole is rounding, square metres: walls are on a grid of a millimetre."""
+
 _STRETCHES = ((1.0, 1.0), (1.0, 10.0), (10.0, 1.0))
 """Factors of distance along a piece's longest side and square to it, by which its neighbours are taken in turn."""
 
@@ -75,9 +78,13 @@ class Pieces:
         """Key that sorts unions from the largest to the smallest."""
         return -round(self.area(union), 9), sorted(union)
 
-    def shape(self, union: Union) -> shapely.Geometry:
-        """Outline of a union."""
-        return shapely.union_all([self.shapes[k] for k in sorted(union)])
+    def shape(self, union: Union) -> BaseGeometry:
+        """Outline of a union, without the pin-holes that rounding leaves where many pieces meet."""
+        outline = shapely.union_all([self.shapes[k] for k in sorted(union)])
+        if isinstance(outline, shapely.Polygon) and outline.interiors:
+            holes = [ring for ring in outline.interiors if shapely.Polygon(ring).area > _PIN]
+            outline = shapely.Polygon(outline.exterior, holes)
+        return outline
 
     def hull(self, union: Union) -> BaseGeometry:
         """Convex hull of a union."""

@@ -48,7 +48,8 @@ def quine_mccluskey_cells(plan: FloorPlan) -> list[shapely.Polygon]:
     pieces = Pieces(tuple(shapes), doors)
     cover = minimum_cover(len(shapes), prime_implicants(pieces))
     parts = _join(pieces, _collapse(pieces, cover))
-    return [shape for part in parts if isinstance(shape := pieces.shape(part), shapely.Polygon)]
+    shapes = [shape for part in parts for shape in shapely.get_parts(pieces.shape(part))]
+    return [shape for shape in shapes if isinstance(shape, shapely.Polygon)]
 
 
 def minimum_cover(n: int, unions: Sequence[Union]) -> list[Union]:
