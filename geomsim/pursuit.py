@@ -36,6 +36,12 @@ CAPTURE_RULES = {
     "cell": "a pursuer is in the evader's cell (the paper's assumption)",
 }
 
+#: positions that a record may hold, of all bodies at all physics steps: about a gigabyte while it is made
+MOST_POSITIONS = 20_000_000
+
+#: belief steps that a pursuer may need for the longest way between two checkpoints: planners look at each of them
+MOST_BELIEF_STEPS = 10_000
+
 #: a body that is held up for so long is reported, seconds
 HELD_UP = 10.0
 
@@ -66,7 +72,7 @@ class Timing:
                     f"The time {name.replace('_', ' ')} must be positive and finite, but is {value:g} s."
                 )
         ratio = self.belief_step / self.physics_step
-        if ratio < 1 or abs(ratio - round(ratio)) > 1e-6:
+        if not 1 <= ratio < math.inf or abs(ratio - round(ratio)) > 1e-6:
             raise GeomsimError(
                 f"The belief step, {self.belief_step:g} s, must be a multiple of the physics step, "
                 f"{self.physics_step:g} s."
@@ -130,6 +136,7 @@ def run_episode(
             raise GeomsimError(
                 f"The {who}'s radius, {radius:g} m, is larger than the {cells.radius:g} m that the cells were made for."
             )
+    _check_steps(team, evader, timing)
     pursuit = _Pursuit(plan, cells, team, evader, seed, capture, motion or AreaSpeedDegree(), timing)
     outcome = pursuit.run(progress)
     if scenario is None:
@@ -137,6 +144,35 @@ def run_episode(
 
         scenario = describe(plan, cells, team, evader, seed, capture, motion, timing)
     return pursuit.log.episode(scenario, plan, cells, outcome)
+
+
+def _check_steps(team: Team, evader: Evader, timing: Timing) -> None:
+    """Refuse clocks with which a body would miss walls, or a pursuit would outgrow memory or patience."""
+    for who, speed, radius in (("pursuer", team.speed, team.radius), ("evader", evader.speed, evader.radius)):
+        if speed * timing.physics_step > radius:
+            raise GeomsimError(
+                f"The {who} of radius {radius:g} m would move {speed * timing.physics_step:g} m, more than that, in "
+                f"a physics step of {timing.physics_step:g} s and might miss a wall: make the step shorter, the body "
+                "slower or larger."
+            )
+    bodies = team.pursuers + 1
+    positions = timing.limit / timing.physics_step * bodies
+    if positions > MOST_POSITIONS:
+        raise GeomsimError(
+            f"A pursuit of {timing.limit:g} s in steps of {timing.physics_step:g} s with {bodies} bodies may come to "
+            f"{positions:.3g} recorded positions, but {MOST_POSITIONS:,} are the most: make the time limit shorter or "
+            "the physics step longer."
+        )
+
+
+def _check_hops(graph: SearchGraph, team: Team, timing: Timing) -> None:
+    """Refuse belief steps so short, or pursuers so slow, that planning for the next cell would take for ever."""
+    steps = float(graph.length.max(initial=0.0)) / team.speed / timing.belief_step
+    if steps > MOST_BELIEF_STEPS:
+        raise GeomsimError(
+            f"A pursuer of {team.speed:g} m/s needs up to {steps:.3g} belief steps of {timing.belief_step:g} s from "
+            f"one cell to the next, but {MOST_BELIEF_STEPS:,} are the most: make the belief step longer."
+        )
 
 
 @dataclass(slots=True)
@@ -199,6 +235,7 @@ class _Pursuit:
         at = np.array([walker.route.points[0] for walker in bodies])
         self.world = World(plan.walls, at, np.array([team.radius] * team.pursuers + [evader.radius]))
         graph = SearchGraph.from_cells(cells)
+        _check_hops(graph, team, timing)
         self.transition = motion.matrix(graph, timing.belief_step)
         self.sight = SameCell()
         speeds = (team.speed,) * team.pursuers

@@ -32,7 +32,7 @@ def run(
         A bundled plan (`geomsim maps` lists them) or a file: GeoJSON, or the YAML of a ROS map.
     """
     from geomsim.episode import Status
-    from geomsim.files import output_folder, write_text
+    from geomsim.files import default_folder, results_folder, write_text
     from geomsim.pursuit import run_episode
     from geomsim.scenario import read_scenario
     from geomsim.team import place_team
@@ -41,23 +41,22 @@ def run(
     team, quarry, timing, motion = told.team(), told.quarry(), told.timing(), told.belief_motion()
     place, cells = told.place()
     told = told.model_copy(update={"start": tuple(cell + 1 for cell in place_team(cells, team))})
-    folder = output_folder(out or Path("geomsim-output") / f"{place.name}-{told.seed}")
-
-    with progress("pursuit") as bar:
-        episode = run_episode(
-            place,
-            cells,
-            team,
-            quarry,
-            seed=told.seed,
-            capture=told.capture,
-            motion=motion,
-            timing=timing,
-            scenario=told.as_dict(),
-            progress=None if bar is None else lambda time, _: bar(time, told.time_limit),
-        )
-    files = {"scenario": write_text(folder / "scenario.toml", told.as_toml())}
-    files["record"] = episode.save(folder / "episode.npz")
+    with results_folder(out or default_folder(place.name, str(told.seed))) as folder:
+        with progress("pursuit") as bar:
+            episode = run_episode(
+                place,
+                cells,
+                team,
+                quarry,
+                seed=told.seed,
+                capture=told.capture,
+                motion=motion,
+                timing=timing,
+                scenario=told.as_dict(),
+                progress=None if bar is None else lambda time, _: bar(time, told.time_limit),
+            )
+        files = {"scenario": write_text(folder / "scenario.toml", told.as_toml())}
+        files["record"] = episode.save(folder / "episode.npz")
     if episode.outcome.status is Status.INTERRUPTED:
         _report(episode, files, json=json)
         complain(f"Interrupted after {episode.outcome.time:.1f} s of the pursuit; what there is of it is in {folder}.")
