@@ -293,6 +293,34 @@ def test_interruption_keeps_what_was_finished(tmp_path: Path, name: str) -> None
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["episode.npz", "scenario.toml"]
 
 
+def test_interruption_while_the_record_is_written_keeps_it(call, monkeypatch: pytest.MonkeyPatch) -> None:
+    save, calls = Episode.save, []
+
+    def interrupted_once(episode: Episode, path: Path) -> Path:
+        calls.append(path)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        return save(episode, path)
+
+    monkeypatch.setattr(Episode, "save", interrupted_once)
+    code, out, err = call("run", "house", "--json", "--out", "out")
+    assert code == 130
+    assert err.startswith("geomsim: Interrupted while drawing; what was finished is in out.")
+    assert json.loads(out)["captured"]
+    assert sorted(p.name for p in Path("out").iterdir()) == ["episode.npz", "scenario.toml"]
+
+
+@pytest.mark.parametrize("command", ["discretize", "run"])
+def test_interruption_before_anything_is_done(call, monkeypatch: pytest.MonkeyPatch, command: str) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("maps.read_plan", interrupted)
+    monkeypatch.setattr("geomsim.scenario.read_plan", interrupted)
+    assert call(command, "house", "--json") == (130, "", "geomsim: Interrupted.\n")
+    assert list(Path().iterdir()) == []
+
+
 def test_a_foreign_package_of_our_names_is_refused(tmp_path: Path) -> None:
     (tmp_path / "planners.py").write_text("")
     code = "import sys; sys.path.insert(0, '.'); import geomsim"

@@ -18,6 +18,7 @@ app = App(
     help="Find somebody who moves about a building, with a team of robots.",
     help_epilogue="Exit codes: 0 done, 2 bad input, 130 interrupted. --debug shows where an error comes from.",
     result_action="return_value",
+    suppress_keyboard_interrupt=False,
     version_flags=["--version"],
     version=lambda: _version(),
 )

@@ -55,13 +55,21 @@ def run(
                 scenario=told.as_dict(),
                 progress=None if bar is None else lambda time, _: bar(time, told.time_limit),
             )
-        files = {"scenario": write_text(folder / "scenario.toml", told.as_toml())}
-        files["record"] = episode.save(folder / "episode.npz")
+        interrupted = False
+        try:
+            record = episode.save(folder / "episode.npz")
+        except KeyboardInterrupt:
+            # the pursuit is finished, so it is kept; whoever presses Ctrl-C once more means it
+            interrupted = True
+            record = episode.save(folder / "episode.npz")
+        files = {"scenario": write_text(folder / "scenario.toml", told.as_toml()), "record": record}
     if episode.outcome.status is Status.INTERRUPTED:
         _report(episode, files, json=json)
         complain(f"Interrupted after {episode.outcome.time:.1f} s of the pursuit; what there is of it is in {folder}.")
         return 130
     try:
+        if interrupted:
+            raise KeyboardInterrupt
         if snapshots:
             files["snapshots"] = episode.save_snapshots(folder / "snapshots.png")
         if video:
