@@ -200,7 +200,7 @@ def _load(path: Path) -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as exc:
         raise ScenarioError(f"Cannot read the scenario {path}: {exc.strerror}.") from exc
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as exc:
+    except (ValueError, RecursionError) as exc:  # wrong syntax, no text, a number of thousands of digits, or too deep
         raise ScenarioError(f"{path} is not valid TOML: {exc}.") from exc
 
 

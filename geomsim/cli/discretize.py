@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
@@ -34,21 +33,21 @@ def discretize(
     from json import dumps
 
     from discretize import check_cells, convex_cells, write_cells
-    from geomsim.files import output_folder, replacing, write_text
+    from geomsim.files import default_folder, replacing, results_folder, write_text
 
     begun = time.perf_counter()
     place = flags.read(plan)
     cells = convex_cells(place, method=method, radius=radius)
     seconds = time.perf_counter() - begun
     report = check_cells(cells)
-    folder = output_folder(out or Path("geomsim-output") / f"{place.name}-cells")
-    files = {"cells": folder / "cells.geojson", "report": folder / "report.json"}
-    with replacing(files["cells"]) as part:
-        write_cells(cells, part)
-    if picture:
-        from geomsim.drawing import write_cells_picture
+    with results_folder(out or default_folder(place.name, "cells")) as folder:
+        files = {"cells": folder / "cells.geojson", "report": folder / "report.json"}
+        with replacing(files["cells"]) as part:
+            write_cells(cells, part)
+        if picture:
+            from geomsim.drawing import write_cells_picture
 
-        files["picture"] = write_cells_picture(cells, folder / "cells.png")
+            files["picture"] = write_cells_picture(cells, folder / "cells.png")
     result = {
         "plan": place.name,
         "method": cells.method,

@@ -32,7 +32,7 @@ def run(
         A bundled plan or a file, a GeoJSON or a ROS map for instance; `geomsim maps` lists what there is.
     """
     from geomsim.episode import Status
-    from geomsim.files import output_folder, write_text
+    from geomsim.files import default_folder, results_folder, write_text
     from geomsim.pursuit import run_episode
     from geomsim.scenario import read_scenario
     from geomsim.team import place_team
@@ -41,29 +41,36 @@ def run(
     team, quarry, timing, motion = told.team(), told.quarry(), told.timing(), told.belief_motion()
     place, cells = told.place()
     told = told.model_copy(update={"start": tuple(cell + 1 for cell in place_team(cells, team))})
-    folder = output_folder(out or Path("geomsim-output") / f"{place.name}-{told.seed}")
-
-    with progress("pursuit") as bar:
-        episode = run_episode(
-            place,
-            cells,
-            team,
-            quarry,
-            seed=told.seed,
-            capture=told.capture,
-            motion=motion,
-            timing=timing,
-            scenario=told.as_dict(),
-            progress=None if bar is None else lambda time, _: bar(time, told.time_limit),
-        )
-    _clear(folder)
-    files = {"scenario": write_text(folder / "scenario.toml", told.as_toml())}
-    files["record"] = episode.save(folder / "episode.npz")
+    with results_folder(out or default_folder(place.name, str(told.seed))) as folder:
+        with progress("pursuit") as bar:
+            episode = run_episode(
+                place,
+                cells,
+                team,
+                quarry,
+                seed=told.seed,
+                capture=told.capture,
+                motion=motion,
+                timing=timing,
+                scenario=told.as_dict(),
+                progress=None if bar is None else lambda time, _: bar(time, told.time_limit),
+            )
+        _clear(folder)
+        interrupted = False
+        try:
+            record = episode.save(folder / "episode.npz")
+        except KeyboardInterrupt:
+            # the pursuit is finished, so it is kept; whoever presses Ctrl-C once more means it
+            interrupted = True
+            record = episode.save(folder / "episode.npz")
+        files = {"scenario": write_text(folder / "scenario.toml", told.as_toml()), "record": record}
     if episode.outcome.status is Status.INTERRUPTED:
         _report(episode, files, json=json)
         complain(f"Interrupted after {episode.outcome.time:.1f} s of the pursuit; what there is of it is in {folder}.")
         return 130
     try:
+        if interrupted:
+            raise KeyboardInterrupt
         if snapshots:
             files["snapshots"] = episode.save_snapshots(folder / "snapshots.png")
         if video:
