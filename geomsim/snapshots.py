@@ -181,7 +181,7 @@ def snapshot_times(episode: Episode, times: Sequence[float] | None, panels: int)
     if times is None:
         if not 1 <= panels <= 60:
             raise DrawingError(f"A contact sheet has 1 to 60 panels, not {panels}.")
-        return [float(t) for t in np.linspace(0.0, end, panels)] if panels > 1 else [end]
+        return [float(t) for t in np.unique(np.linspace(0.0, end, panels))] if panels > 1 else [end]
     if not times:
         raise DrawingError("A contact sheet needs at least one time.")
     for time in times:

@@ -15,7 +15,7 @@ from geomsim.drawing.legend import draw_scale_bar
 from geomsim.drawing.playback import write_png
 from geomsim.drawing.raster import Image, Raster, blank
 from geomsim.drawing.surface import Surface
-from geomsim.drawing.text import text_width
+from geomsim.drawing.text import cut_text, text_width
 from geomsim.drawing.theme import Theme, find_theme
 from geomsim.drawing.viewport import Box, Viewport
 from maps import FloorPlan
@@ -130,7 +130,7 @@ def _draw_repairs(surface: Surface, plan: FloorPlan, view: Viewport, theme: Them
 
 def _draw_header(surface: Surface, cells: CellMap, view: Viewport, theme: Theme, unit: float, width: int) -> None:
     at = (16 * unit, 23 * unit)
-    name = cells.plan.name
+    name = cut_text(cells.plan.name, 0.3 * width, 20 * unit, bold=True)
     surface.text(name, at, 20 * unit, theme.text, bold=True)
     x = at[0] + text_width(name, 20 * unit, True) + 14 * unit
     told = f"{len(cells)} cells · {len(cells.portals)} portals · {cells.plan.area:.0f} m² · {cells.method}"

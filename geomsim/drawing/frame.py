@@ -15,7 +15,7 @@ from geomsim.drawing.scale import ProbabilityScale
 from geomsim.drawing.sight import Sight
 from geomsim.drawing.strip import CaptureStrip
 from geomsim.drawing.surface import Surface
-from geomsim.drawing.text import text_width
+from geomsim.drawing.text import cut_text, text_width
 from geomsim.drawing.theme import DrawingError, find_theme
 from geomsim.drawing.viewport import Box, Viewport
 from geomsim.episode import Episode
@@ -161,10 +161,11 @@ class FrameDrawer:
             draw_colour_bar(surface, legend, self._scale, theme, unit, title)
         draw_scale_bar(surface, legend, self._floor.view.scale, theme, unit)
         at = (16 * unit, 23 * unit)
-        surface.text(episode.plan.name, at, 20 * unit, theme.text, bold=True)
+        name = cut_text(episode.plan.name, 0.35 * self.style.size[0], 20 * unit, bold=True)
+        surface.text(name, at, 20 * unit, theme.text, bold=True)
         robots = episode.pursuers.shape[1]
         told = f"{robots} robot{'s' * (robots != 1)} · {len(episode.cells)} cells"
-        x = at[0] + text_width(episode.plan.name, 20 * unit, True) + 14 * unit
+        x = at[0] + text_width(name, 20 * unit, True) + 14 * unit
         surface.text(told, (x, at[1] + unit), 14 * unit, theme.muted)
         return image
 
