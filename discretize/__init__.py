@@ -8,6 +8,7 @@ from discretize.cutting import convex_cells
 from discretize.errors import DiscretizeError
 from discretize.exact import exact_cells
 from discretize.methods import METHODS, Method
+from discretize.visibility import visibility_cells, visibility_count
 
 __all__ = [
     "METHODS",
@@ -23,5 +24,7 @@ __all__ = [
     "exact_cells",
     "graph_components",
     "read_cells",
+    "visibility_cells",
+    "visibility_count",
     "write_cells",
 ]

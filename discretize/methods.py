@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import shapely
 
 from discretize.exact import exact_cells
+from discretize.visibility import visibility_cells
 from maps import FloorPlan
 
 __all__ = ["METHODS", "Method"]
@@ -45,6 +46,13 @@ METHODS: dict[str, Method] = {
             1.0,
             "strictly convex cells: triangles merged while they stay convex; never fails",
             "Hertel and Mehlhorn 1983, on a constrained Delaunay triangulation",
+        ),
+        Method(
+            "visibility",
+            visibility_cells,
+            1 - 1e-6,
+            "conservative visibility cells: very many, within each of which the same can be seen; to compare with",
+            "LaValle, Lin, Guibas, Latombe and Motwani 1997",
         ),
     )
 }

@@ -41,7 +41,8 @@ class Outcome:
     cell : int or None
         The cell it was captured in, counted from 0.
     predicted : float
-        The chance of capture by then that the belief predicted: p0 after its last step.
+        The chance of capture by then that the belief predicted: p0 after its last step. The belief counts on same-cell
+        capture, so where capture is by sight it predicts less than happens.
     notes : tuple of str
         What a person should know of the run, a sentence each; a body that was held up, for instance.
     """

@@ -107,7 +107,7 @@ def run_episode(
     seed : int
         The same seed gives the same episode, bit for bit.
     capture : {"sight", "cell"}
-        What counts as capture, see ``CAPTURE_RULES``.
+        What counts as capture, see ``CAPTURE_RULES``. The belief counts on same-cell capture either way (Section V).
     motion : MotionModel, optional
         What the pursuers believe of the evader's motion; by default area, speed and degree (Section V).
     timing : Timing, optional

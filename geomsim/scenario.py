@@ -58,6 +58,7 @@ class Scenario(BaseModel):
     planner: str = "decoupled"
     cost: str | None = None
     depth: Annotated[int, Field(ge=1)] | None = None
+    options: dict[str, bool | int | float | str] = {}
     capture: str = "sight"
     range: Annotated[float, Field(gt=0)] = math.inf
     fov_degrees: Annotated[float, Field(gt=0, le=360)] = 360.0
@@ -96,12 +97,19 @@ class Scenario(BaseModel):
         """Make the team of pursuers."""
         return Team(
             pursuers=self.pursuers,
-            planner=make_planner(self.planner, cost=self.cost, depth=self.depth),
+            planner=self.method_of_planning(),
             start=self.start,
             speed=self.speed,
             radius=self.radius,
             sensor=Sensor(self.range, math.radians(self.fov_degrees)),
         )
+
+    def method_of_planning(self) -> Planner:
+        """Make the planner, with its parameters."""
+        clash = next((key for key in ("cost", "depth") if key in self.options), None)
+        if clash is not None:
+            raise ScenarioError(f"{clash} is a key of its own, not one of the planner's options.")
+        return make_planner(self.planner, cost=self.cost, depth=self.depth, **self.options)
 
     def quarry(self) -> Evader:
         """Make the evader."""
@@ -127,9 +135,7 @@ class Scenario(BaseModel):
 
     def as_dict(self) -> dict[str, Any]:
         """Return what a scenario file would hold: plain values, a planner's defaults told, no keys that mean "none"."""
-        told = self.model_dump(mode="python") | _planner_keys(
-            make_planner(self.planner, cost=self.cost, depth=self.depth)
-        )
+        told = self.model_dump(mode="python") | _planner_keys(self.method_of_planning())
         told["start"] = list(self.start)
         return _told(told)
 
@@ -232,8 +238,9 @@ def _planner_keys(planner: Planner) -> dict[str, Any]:
     """Tell a planner by its registered name, a user's own by its class's, and its parameters."""
     names = {entry.make: name for name, entry in PLANNERS.items()}
     told = {key: getattr(planner, key) for key in getattr(planner, "__dataclass_fields__", ())}
-    return {"planner": names.get(type(planner), type(planner).__name__), **told}
+    own = {key: told.pop(key) for key in ("cost", "depth") if key in told}
+    return {"planner": names.get(type(planner), type(planner).__name__), **own, "options": told}
 
 
 def _told(keys: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in keys.items() if value is not None and value != math.inf and value != []}
+    return {key: value for key, value in keys.items() if value not in (None, math.inf, [], {})}

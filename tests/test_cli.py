@@ -14,6 +14,9 @@ import pytest
 
 from geomsim import Episode
 from geomsim.cli import main
+from geomsim.cli.flags import ScenarioFlags
+from geomsim.scenario import Scenario
+from planners import Decoupled
 
 TWO_ROOMS = {
     "type": "Polygon",
@@ -232,3 +235,13 @@ def test_a_foreign_package_of_our_names_is_refused(tmp_path: Path) -> None:
     )
     assert done.returncode != 0
     assert "geomsim needs its own package 'planners'" in done.stderr
+
+
+@pytest.mark.parametrize("key", [key for key, field in Scenario.model_fields.items() if key != "plan"])
+def test_help_tells_defaults(key: str) -> None:
+    doc = " ".join((ScenarioFlags.__doc__ or "").split(f"    {key}\n", 1)[1].split())
+    default = Scenario.model_fields[key].default
+    words = {"start": "the plan's own", "range": "without limit", "evader_start": "a random one"}
+    words |= {"cost": Decoupled().cost, "depth": str(Decoupled().depth)}
+    told = words.get(key, f"{default:g}" if isinstance(default, float) else str(default))
+    assert doc[: doc.index("]") + 1].endswith(f" [default: {told}]"), doc

@@ -28,6 +28,7 @@ app.command(
     name="discretize",
     help="A floor plan cut into cells: GeoJSON, picture, report.",
 )
+app.command("geomsim.cli.predict:predict", name="predict", help="Exact expected capture time, without sampling.")
 app.command("geomsim.cli.render:render", name="render", help="Pictures and video from a saved episode.")
 app.command("geomsim.cli.listing:maps", name="maps", help="The bundled floor plans.")
 app.command("geomsim.cli.listing:planners", name="planners", help="The planners, each with its source.")

@@ -17,7 +17,7 @@ __all__ = ["discretize"]
 def discretize(
     plan: str,
     *,
-    method: Annotated[str, Parameter(help="How to cut.")] = "exact",
+    method: Annotated[str, Parameter(help="How to cut: exact.")] = "exact",
     radius: Annotated[float, Parameter(help="Radius of the robot that must fit through a portal, metres.")] = 0.2,
     picture: Annotated[bool, Parameter(help="Draw the picture.")] = True,
     out: OutFlag = None,

@@ -13,56 +13,67 @@ from maps import GeomsimError
 __all__ = ["JsonFlag", "OutFlag", "ScenarioFlags"]
 
 JsonFlag = Annotated[bool, Parameter(name="--json", negative="", help="Print one JSON object and nothing else.")]
-OutFlag = Annotated[Path | None, Parameter(name="--out", help="Folder for the files written.")]
+OutFlag = Annotated[
+    Path | None,
+    Parameter(
+        name="--out",
+        help="Folder for the files written; without it a folder in geomsim-output (render: the record's own).",
+    ),
+]
 
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class ScenarioFlags:
-    """The keys of a scenario file; a flag overrides the file.
+    """The keys of a scenario file; a flag overrides the file. Defaults are those of :class:`geomsim.scenario.Scenario`.
 
     Attributes
     ----------
     seed
-        The same seed gives the same episode, bit for bit.
+        The same seed gives the same episode, bit for bit. [default: 0]
     pursuers
-        Number of robots.
+        Number of robots. [default: 2]
     start
-        Numbers of the cells in which they start, as in the picture: one for all, or one each, like 43,44.
+        Numbers of the cells in which they start, as in the picture: one for all, or one each, like
+        43,44. [default: the plan's own]
     planner
-        How they coordinate; `geomsim planners` lists them.
+        How they coordinate; `geomsim planners` lists them. [default: decoupled]
     cost
         Heuristic that the planner minimises: entropy, target-probability, probability, distance-over-probability.
+        [default: entropy]
     depth
-        Cells that the planner looks ahead.
+        Cells that the planner looks ahead. [default: 5]
+    option
+        Another parameter of the planner, as NAME=VALUE; may be given several times.
     capture
-        What counts as capture: sight or cell.
+        What counts as capture: sight, a free line of sight to the evader, or cell, being in its cell. [default:
+        sight]
     range
-        How far a robot sees, metres.
+        How far a robot sees, metres. [default: without limit]
     fov_degrees
-        Field of view of a robot, degrees.
+        Field of view of a robot, degrees. [default: 360]
     speed
-        Speed of the robots, metres a second.
+        Speed of the robots, metres a second. [default: 1]
     radius
-        Radius of the robots, metres.
+        Radius of the robots, metres. [default: 0.2]
     evader
-        How the evader moves: centroid-boundary or still.
+        How the evader moves: centroid-boundary or still. [default: centroid-boundary]
     evader_start
-        Number of the cell in which it starts.
+        Number of the cell in which it starts. [default: a random one]
     evader_speed
-        Its speed, metres a second.
+        Its speed, metres a second. [default: 1]
     evader_radius
-        Its radius, metres.
+        Its radius, metres. [default: 0.2]
     motion
-        How the robots believe it moves: area-speed-degree, uniform or stationary.
+        How the robots believe it moves: area-speed-degree, uniform or stationary. [default: area-speed-degree]
     method
-        How the plan is cut into cells.
+        How the plan is cut into cells. [default: exact]
     time_limit
-        When to give up, seconds.
+        When to give up, seconds. [default: 1800]
     belief_step
-        Time between two belief steps, seconds.
+        Time between two belief steps, seconds. [default: 1]
     physics_step
-        Time between two physics steps, seconds.
+        Time between two physics steps, seconds. [default: 0.1]
     """
 
     seed: int | None = None
@@ -71,6 +82,7 @@ class ScenarioFlags:
     planner: str | None = None
     cost: str | None = None
     depth: int | None = None
+    option: tuple[str, ...] = ()
     capture: str | None = None
     range: float | None = None
     fov_degrees: float | None = None
@@ -88,7 +100,7 @@ class ScenarioFlags:
 
     def given(self) -> dict[str, Any]:
         """Return the keys that were given, with their values as a scenario has them."""
-        told = {f.name: getattr(self, f.name) for f in fields(self)}
+        told = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "option"}
         if self.start is not None:
             try:
                 told["start"] = tuple(int(part) for part in self.start.split(","))
@@ -96,4 +108,20 @@ class ScenarioFlags:
                 raise GeomsimError(
                     f"--start takes cell numbers with commas between them, not {self.start!r}."
                 ) from None
+        if self.option:
+            told["options"] = dict(_option(text) for text in self.option)
         return {key: value for key, value in told.items() if value is not None}
+
+
+def _option(text: str) -> tuple[str, bool | int | float | str]:
+    """Read NAME=VALUE, the value as TOML would where it can."""
+    import tomllib
+
+    name, equals, value = text.partition("=")
+    if not (name.isidentifier() and equals and value):
+        raise GeomsimError(f"--option takes NAME=VALUE, not {text!r}.")
+    try:
+        read = tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return name, value
+    return name, read if isinstance(read, bool | int | float) else value
