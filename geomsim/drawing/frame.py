@@ -100,7 +100,7 @@ class FrameDrawer:
 
         self._timeline = Timeline(episode)
         self._floor = Floor(episode.cells, plan_box, theme, unit)
-        self._figures = Figures(self._floor.view, theme, unit)
+        self._figures = Figures(self._floor.view, theme, unit, episode.pursuers.shape[1])
         self._strip = CaptureStrip(episode, strip_box, theme, unit)
         self._sight = Sight(episode)
         self._scale = ProbabilityScale.of(episode.beliefs)
