@@ -92,7 +92,10 @@ class Scene {
     this.wallLines(context);
     for (const portal of this.episode.data.portals) this.disc(context, this.pixel(portal), 1.7 * unit, theme.portal);
     if (numbers) {
-      this.episode.data.cells.forEach((cell, k) => this.text(context, `${k + 1}`, this.pixel(cell.at), 11, theme.text));
+      this.episode.data.cells.forEach((cell, k) => {
+        const dark = belief && this.episode.share(step, k) > 0.3 * this.episode.data.top;
+        this.text(context, `${k + 1}`, this.pixel(cell.at), 11 * (this.fine / this.unit), dark ? theme.page : theme.text);
+      });
     }
   }
 
