@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from discretize import CellMap, Portal, check_cells, convex_cells
     from geomsim.episode import Episode, Outcome, Status
-    from geomsim.evaders import CentroidBoundary, Still
+    from geomsim.evaders import CentroidBoundary, Fleeing, Hiding, ShortestPaths, Still
     from geomsim.pursuit import Timing, run_episode
     from geomsim.scenario import Scenario, read_scenario
     from geomsim.sensing import Sensor
@@ -35,14 +35,17 @@ __all__ = [
     "Decoupled",
     "Episode",
     "Evader",
+    "Fleeing",
     "FloorPlan",
     "GeomsimError",
+    "Hiding",
     "Outcome",
     "Portal",
     "Random",
     "Scenario",
     "SearchGraph",
     "Sensor",
+    "ShortestPaths",
     "Stationary",
     "Status",
     "Still",
@@ -61,7 +64,7 @@ _HOMES = {
     "maps": ("FloorPlan", "GeomsimError"),
     "planners": ("Decoupled", "Random", "SearchGraph", "Stationary"),
     "geomsim.episode": ("Episode", "Outcome", "Status"),
-    "geomsim.evaders": ("CentroidBoundary", "Still"),
+    "geomsim.evaders": ("CentroidBoundary", "Fleeing", "Hiding", "ShortestPaths", "Still"),
     "geomsim.pursuit": ("Timing", "run_episode"),
     "geomsim.scenario": ("Scenario", "read_scenario"),
     "geomsim.sensing": ("Sensor",),

@@ -52,6 +52,10 @@ class Scenario(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     plan: str = "office"
+    resolution: _Positive | None = None
+    level: str | None = None
+    units: str | None = None
+    structure: bool | None = None
     seed: Annotated[int, Field(ge=0)] = 0
     pursuers: Annotated[int, Field(ge=1, le=1000)] = 2
     start: tuple[int, ...] = ()
@@ -62,6 +66,7 @@ class Scenario(BaseModel):
     capture: str = "sight"
     range: Annotated[float, Field(gt=0)] = math.inf
     fov_degrees: Annotated[float, Field(gt=0, le=360)] = 360.0
+    detection: Annotated[float, Field(gt=0, le=1)] = 1.0
     speed: _Positive = 1.0
     radius: _Positive = 0.2
     evader: str = "centroid-boundary"
@@ -101,7 +106,7 @@ class Scenario(BaseModel):
             start=self.start,
             speed=self.speed,
             radius=self.radius,
-            sensor=Sensor(self.range, math.radians(self.fov_degrees)),
+            sensor=Sensor(self.range, math.radians(self.fov_degrees), self.detection),
         )
 
     def method_of_planning(self) -> Planner:
@@ -130,7 +135,9 @@ class Scenario(BaseModel):
 
     def place(self) -> tuple[FloorPlan, CellMap]:
         """Read the plan and cut it."""
-        plan = read_plan(self.plan)
+        plan = read_plan(
+            self.plan, resolution=self.resolution, level=self.level, units=self.units, structure=self.structure
+        )
         return plan, convex_cells(plan, method=self.method, radius=max(self.radius, self.evader_radius))
 
     def as_dict(self) -> dict[str, Any]:
@@ -219,6 +226,7 @@ def describe(
         "capture": capture,
         "range": team.sensor.range,
         "fov_degrees": math.degrees(team.sensor.field_of_view),
+        "detection": team.sensor.detection,
         "speed": team.speed,
         "radius": team.radius,
         "evader": kinds.get(type(evader.model), type(evader.model).__name__),

@@ -30,6 +30,7 @@ app.command(
 )
 app.command("geomsim.cli.predict:predict", name="predict", help="Exact expected capture time, without sampling.")
 app.command("geomsim.cli.render:render", name="render", help="Pictures and video from a saved episode.")
+app.command("geomsim.cli.convert:convert", name="convert", help="A floor plan from one format into another.")
 app.command("geomsim.cli.listing:maps", name="maps", help="The bundled floor plans.")
 app.command("geomsim.cli.listing:planners", name="planners", help="The planners, each with its source.")
 

@@ -9,7 +9,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from geomsim.cli.console import say, say_json
-from geomsim.cli.flags import JsonFlag, OutFlag
+from geomsim.cli.flags import JsonFlag, OutFlag, PlanFlags
 
 __all__ = ["discretize"]
 
@@ -22,6 +22,7 @@ def discretize(
     picture: Annotated[bool, Parameter(help="Draw the picture.")] = True,
     out: OutFlag = None,
     json: JsonFlag = False,
+    flags: PlanFlags = PlanFlags(),  # noqa: B008 a frozen value without fields set
 ) -> int:
     """Cut a floor plan into cells; write them as GeoJSON and as a picture, and report on them.
 
@@ -34,10 +35,9 @@ def discretize(
 
     from discretize import check_cells, convex_cells, write_cells
     from geomsim.files import output_folder, replacing, write_text
-    from maps import read_plan
 
     begun = time.perf_counter()
-    place = read_plan(plan)
+    place = flags.read(plan)
     cells = convex_cells(place, method=method, radius=radius)
     seconds = time.perf_counter() - begun
     report = check_cells(cells)

@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from maps import GeomsimError
+from maps import FloorPlan, GeomsimError
 
-__all__ = ["JsonFlag", "OutFlag", "ScenarioFlags"]
+__all__ = ["JsonFlag", "OutFlag", "PlanFlags", "ScenarioFlags"]
 
 JsonFlag = Annotated[bool, Parameter(name="--json", negative="", help="Print one JSON object and nothing else.")]
 OutFlag = Annotated[
@@ -24,7 +24,37 @@ OutFlag = Annotated[
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
-class ScenarioFlags:
+class PlanFlags:
+    """What a floor plan's file may leave open.
+
+    Attributes
+    ----------
+    resolution
+        Size of a pixel, grid cell or drawing unit in metres, for a plan that does not say it.
+    level
+        Storey, of a plan that has several. [default: the largest]
+    units
+        Unit of the coordinates, like mm or ft, for a plan that does not say it.
+    structure
+        Take the furniture out of a scanned map and keep its walls. [default: if it is plainly a scan]
+    """
+
+    resolution: float | None = None
+    level: str | None = None
+    units: str | None = None
+    structure: bool | None = None
+
+    def read(self, plan: str) -> FloorPlan:
+        """Read a floor plan with what was given."""
+        from maps import read_plan
+
+        told = {"resolution": self.resolution, "level": self.level, "units": self.units, "structure": self.structure}
+        return read_plan(plan, **told)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class ScenarioFlags(PlanFlags):
     """The keys of a scenario file; a flag overrides the file. Defaults are those of :class:`geomsim.scenario.Scenario`.
 
     Attributes
@@ -52,12 +82,15 @@ class ScenarioFlags:
         How far a robot sees, metres. [default: without limit]
     fov_degrees
         Field of view of a robot, degrees. [default: 360]
+    detection
+        Probability that a robot notices, within a second, an evader that stays in view. [default: 1]
     speed
         Speed of the robots, metres a second. [default: 1]
     radius
         Radius of the robots, metres. [default: 0.2]
     evader
-        How the evader moves: centroid-boundary or still. [default: centroid-boundary]
+        How the evader moves: centroid-boundary, still, shortest-paths, hiding or fleeing. [default:
+        centroid-boundary]
     evader_start
         Number of the cell in which it starts. [default: a random one]
     evader_speed
@@ -86,6 +119,7 @@ class ScenarioFlags:
     capture: str | None = None
     range: float | None = None
     fov_degrees: float | None = None
+    detection: float | None = None
     speed: float | None = None
     radius: float | None = None
     evader: str | None = None
