@@ -12,8 +12,9 @@ import statistics
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -47,6 +48,16 @@ def pursuit() -> Episode:
     )
 
 
+def each(act: Callable[[Any], object], things: Iterable[Any]) -> Callable[[], None]:
+    """Return an act that does something with each thing and keeps nothing."""
+
+    def run() -> None:
+        for thing in things:
+            act(thing)
+
+    return run
+
+
 def milliseconds(act: Callable[[], object], count: int, clock: Callable[[], float] = time.thread_time) -> float:
     """Return the median over the rounds of the time that one of ``count`` parts of an act takes."""
     rounds = []
@@ -65,10 +76,10 @@ def measure() -> dict[str, dict[str, float]]:
     moments = [timeline.at(float(t)) for t in times]
     frame = drawer.draw(0.0)
     found = {
-        "copying a frame": milliseconds(lambda: [frame.copy() for _ in range(200)], 200),
-        "a frame": milliseconds(lambda: [drawer.draw(float(t)) for t in times], len(times)),
-        "a frame without sight": milliseconds(lambda: [bare.draw(float(t)) for t in times], len(times)),
-        "one visibility polygon": milliseconds(lambda: [sight.area(m, 0) for m in moments], len(moments)),
+        "copying a frame": milliseconds(each(lambda _: frame.copy(), range(200)), 200),
+        "a frame": milliseconds(each(drawer.draw, times.tolist()), len(times)),
+        "a frame without sight": milliseconds(each(bare.draw, times.tolist()), len(times)),
+        "one visibility polygon": milliseconds(each(lambda m: sight.area(m, 0), moments), len(moments)),
         "preparing an episode": milliseconds(lambda: FrameDrawer(episode), 1),
         "a contact sheet": milliseconds(lambda: draw_snapshots(episode), 1),
         "a replay": milliseconds(lambda: replay_page(episode), 1),
