@@ -1,6 +1,7 @@
 """Belief, motion and capture models, cost heuristics, path search, coordination."""
 
 from planners.baselines import Random, Stationary
+from planners.beam import Beam
 from planners.belief import advance, point_belief, uniform_belief
 from planners.capture import CaptureError, CaptureModel, SameCell
 from planners.conformance import ConformanceError, check_policy
@@ -8,7 +9,8 @@ from planners.costs import COSTS, Cost, CostError, Hops, find_cost
 from planners.edgelist import read_edge_list, unit_problem
 from planners.evaluation import Prediction, lower_bounds, predict
 from planners.graph import GraphError, SearchGraph
-from planners.lookahead import Decoupled, PlannerError
+from planners.horizon import BestResponse, BranchAndBound, Sequential
+from planners.lookahead import Decoupled
 from planners.motion import (
     AreaSpeedDegree,
     MotionError,
@@ -19,7 +21,7 @@ from planners.motion import (
 )
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
 from planners.registry import PLANNERS, PlannerEntry, make_planner
-from planners.team import Beam
+from planners.team import PlannerError
 from planners.walks import TooLargeError
 
 __all__ = [
@@ -27,6 +29,8 @@ __all__ = [
     "PLANNERS",
     "AreaSpeedDegree",
     "Beam",
+    "BestResponse",
+    "BranchAndBound",
     "CaptureError",
     "CaptureModel",
     "ConformanceError",
@@ -49,6 +53,7 @@ __all__ = [
     "SearchGraph",
     "SearchProblem",
     "SearchState",
+    "Sequential",
     "Stationary",
     "StationaryMotion",
     "TooLargeError",
