@@ -18,7 +18,7 @@ __all__ = ["Beam", "BeamSearch", "TeamPlan"]
 TIE = 1e-12
 
 # Weight of the way to what is left, chosen by measurement between 0 (no guidance) and 1 (too much of it).
-GUIDE = 0.5
+GUIDE = 0.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class Beam:
         If one of them is below 1.
     """
 
-    width: int = 100
+    width: int = 200
     horizon: int = 120
     patience: int = 10
     alike: int = 1

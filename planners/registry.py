@@ -10,9 +10,11 @@ from typing import Any
 from maps import nearest
 from planners.baselines import Random, Stationary
 from planners.beam import Beam
+from planners.coupled import Coupled
 from planners.horizon import BestResponse, BranchAndBound, Sequential
 from planners.lookahead import Decoupled
 from planners.policy import Planner
+from planners.rollout import Rollout
 from planners.team import PlannerError
 
 __all__ = ["PLANNERS", "PlannerEntry", "make_planner"]
@@ -55,6 +57,18 @@ PLANNERS: Mapping[str, PlannerEntry] = _table(
         Decoupled,
         "each robot searches all its paths to a depth while the others stand still",
         "the paper, Algorithm 1 and Section IV-E",
+    ),
+    PlannerEntry(
+        "coupled",
+        Coupled,
+        "the team searches all its joint paths to a depth",
+        "the paper, Algorithm 1 and Section IV-D",
+    ),
+    PlannerEntry(
+        "rollout",
+        Rollout,
+        "runs several planners to the end in the cell model and follows the best, never worse than any of them",
+        "Bertsekas, Castanon: Rollout algorithms for stochastic scheduling problems, 1999",
     ),
     PlannerEntry(
         "beam",

@@ -155,6 +155,12 @@ class SearchModel:
             return int(self.graph.indptr[cell]) + cell
         return self.graph.edge(cell, target) + cell + 1
 
+    def length_of(self, moves: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Return the way that each move goes, metres; 0 for a wait."""
+        cell = np.searchsorted(self.moves[0].start, moves, side="right") - 1
+        wait = moves == self.moves[0].start[cell]
+        return np.where(wait, 0.0, np.append(self.graph.length, 0.0)[moves - cell - 1])
+
     def under_way(self, pursuer: int, state: PursuerState) -> tuple[int, int]:
         """Return the move that a pursuer is on and how many of its steps are done.
 
