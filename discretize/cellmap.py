@@ -9,8 +9,11 @@ import shapely
 from numpy.typing import NDArray
 
 from maps import FloorPlan
+from maps.showing import svg_picture
 
 __all__ = ["CellMap", "Portal", "graph_components"]
+
+_SOFT = ("#ffdedc", "#fbe3c6", "#e0edcf", "#c8f1ed", "#d8e9ff", "#f4dffb")
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +109,17 @@ class CellMap:
         which, cell = self._tree.query(shapely.points(points), predicate="intersects")
         np.minimum.at(found, which, cell)
         return np.where(found == len(self), -1, found)
+
+    def _repr_svg_(self) -> str:
+        """Return a picture for a notebook: cells, walls and portals."""
+        drawn: list[tuple[shapely.Geometry, str]] = [
+            (cell, f'fill="{_SOFT[k % len(_SOFT)]}" stroke="#8a94a3" stroke-width="0.5"')
+            for k, cell in enumerate(self.cells)
+        ]
+        drawn.append((self.plan.space, 'fill="none" stroke="#232a35" stroke-width="2"'))
+        portals = shapely.MultiLineString([portal.segment for portal in self.portals])
+        drawn.append((portals, 'fill="none" stroke="#00838f" stroke-width="2"'))
+        return svg_picture(drawn, self.plan.bounds)
 
     @cached_property
     def _tree(self) -> shapely.STRtree:

@@ -71,7 +71,8 @@ def triangulate(part: shapely.Polygon, doors: tuple[shapely.LineString, ...]) ->
     part = shapely.normalize(shapely.orient_polygons(shapely.set_precision(part, 0)))
     shapely.prepare(part)
     near = [shapely.set_precision(door, 0) for door in doors if part.dwithin(door, _SNAP)]
-    feet = [foot for door in near if (foot := _on_walls(door, part)) is not None]
+    inside = [piece for door in near for piece in _within(door, part)]
+    feet = [foot for piece in inside if (foot := _on_walls(piece, part)) is not None]
     part = _noded(part, feet)
     triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(part))
     corners = shapely.get_coordinates(triangles).reshape(-1, 4, 2)[:, :3].reshape(-1, 2)
@@ -117,6 +118,12 @@ def _integers(xy: NDArray[np.float64]) -> list[Vertex]:
     whole = (near - origin).astype(np.int64).tolist()
     fine = np.rint(rest * (1 << _FINE)).astype(np.int64).tolist()
     return [((x << _FINE) + fx, (y << _FINE) + fy) for (x, y), (fx, fy) in zip(whole, fine, strict=True)]
+
+
+def _within(door: shapely.LineString, part: shapely.Polygon) -> list[shapely.LineString]:
+    """The pieces of a door that lie in free space: people draw doors into the walls beside them."""
+    pieces = shapely.get_parts(shapely.intersection(door, part))
+    return [piece for piece in pieces if isinstance(piece, shapely.LineString) and piece.length > _SNAP] or [door]
 
 
 def _on_walls(door: shapely.LineString, part: shapely.Polygon) -> NDArray[np.float64] | None:

@@ -20,11 +20,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from discretize import CellMap, Portal, check_cells, convex_cells
     from geomsim.episode import Episode, Outcome, Status
-    from geomsim.evaders import CentroidBoundary, Still
+    from geomsim.evaders import CentroidBoundary, Fleeing, Hiding, ShortestPaths, Still
     from geomsim.pursuit import Timing, run_episode
     from geomsim.scenario import Scenario, read_scenario
     from geomsim.sensing import Sensor
     from geomsim.team import Evader, Team
+    from geomsim.trials import Trials, run_trials
     from maps import FloorPlan, GeomsimError
     from maps import read_plan as load_plan
     from planners import Decoupled, Random, SearchGraph, Stationary
@@ -35,24 +36,29 @@ __all__ = [
     "Decoupled",
     "Episode",
     "Evader",
+    "Fleeing",
     "FloorPlan",
     "GeomsimError",
+    "Hiding",
     "Outcome",
     "Portal",
     "Random",
     "Scenario",
     "SearchGraph",
     "Sensor",
+    "ShortestPaths",
     "Stationary",
     "Status",
     "Still",
     "Team",
     "Timing",
+    "Trials",
     "check_cells",
     "convex_cells",
     "load_plan",
     "read_scenario",
     "run_episode",
+    "run_trials",
 ]
 
 # Where each public name lives: it is imported when first asked for, so that `import geomsim` costs next to nothing.
@@ -61,11 +67,12 @@ _HOMES = {
     "maps": ("FloorPlan", "GeomsimError"),
     "planners": ("Decoupled", "Random", "SearchGraph", "Stationary"),
     "geomsim.episode": ("Episode", "Outcome", "Status"),
-    "geomsim.evaders": ("CentroidBoundary", "Still"),
+    "geomsim.evaders": ("CentroidBoundary", "Fleeing", "Hiding", "ShortestPaths", "Still"),
     "geomsim.pursuit": ("Timing", "run_episode"),
     "geomsim.scenario": ("Scenario", "read_scenario"),
     "geomsim.sensing": ("Sensor",),
     "geomsim.team": ("Evader", "Team"),
+    "geomsim.trials": ("Trials", "run_trials"),
 }
 
 

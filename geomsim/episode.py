@@ -41,7 +41,8 @@ class Outcome:
     cell : int or None
         The cell it was captured in, counted from 0.
     predicted : float
-        The chance of capture by then that the belief predicted: p0 after its last step.
+        The chance of capture by then that the belief predicted: p0 after its last step. The belief counts on same-cell
+        capture, so where capture is by sight it predicts less than happens.
     notes : tuple of str
         What a person should know of the run, a sentence each; a body that was held up, for instance.
     """
@@ -156,3 +157,10 @@ class Episode:
         from geomsim.replay import write_replay
 
         return write_replay(self, Path(path))
+
+    def _repr_png_(self) -> bytes:
+        """Return snapshots for a notebook."""
+        from geomsim.drawing import Picture
+        from geomsim.snapshots import draw_snapshots
+
+        return Picture(draw_snapshots(self, width=1200))._repr_png_()

@@ -12,29 +12,25 @@ from numpy.typing import NDArray
 
 from discretize import CellMap
 from geomsim.episode import Episode, Outcome, Status
+from geomsim.quarry import Quarry
+from geomsim.seeds import Streams
 from geomsim.team import Evader, Team, place_evader, place_team
-from geomsim.walking import Routes, Walker
-from geomsim.world import World
+from geomsim.teamwork import Teamwork
 from maps import FloorPlan, GeomsimError, nearest
-from planners import (
-    AreaSpeedDegree,
-    MotionModel,
-    Policy,
-    PursuerState,
-    SameCell,
-    SearchGraph,
-    SearchProblem,
-    SearchState,
-    advance,
-    uniform_belief,
-)
+from planners import AreaSpeedDegree, CaptureModel, MotionModel, SameCell, SearchGraph
 
-__all__ = ["CAPTURE_RULES", "Timing", "run_episode"]
+__all__ = ["CAPTURE_RULES", "HELD_UP", "Timing", "believed_capture", "check_pursuit", "run_episode"]
 
 CAPTURE_RULES = {
     "sight": "a pursuer has a free line of sight to the evader, within its range and field of view",
     "cell": "a pursuer is in the evader's cell (the paper's assumption)",
 }
+
+#: positions that a record may hold, of all bodies at all physics steps: about a gigabyte while it is made
+MOST_POSITIONS = 20_000_000
+
+#: belief steps that a pursuer may need for the longest way between two checkpoints: planners look at each of them
+MOST_BELIEF_STEPS = 10_000
 
 #: a body that is held up for so long is reported, seconds
 HELD_UP = 10.0
@@ -66,11 +62,16 @@ class Timing:
                     f"The time {name.replace('_', ' ')} must be positive and finite, but is {value:g} s."
                 )
         ratio = self.belief_step / self.physics_step
-        if ratio < 1 or abs(ratio - round(ratio)) > 1e-6:
+        if not 1 <= ratio < math.inf or abs(ratio - round(ratio)) > 1e-6:
             raise GeomsimError(
                 f"The belief step, {self.belief_step:g} s, must be a multiple of the physics step, "
                 f"{self.physics_step:g} s."
             )
+
+    @property
+    def steps(self) -> int:
+        """Physics steps up to the limit."""
+        return math.ceil(self.limit / self.physics_step - 1e-9)
 
     @property
     def steps_per_belief(self) -> int:
@@ -85,6 +86,7 @@ def run_episode(
     evader: Evader | None = None,
     *,
     seed: int = 0,
+    team_seed: int | None = None,
     capture: str = "sight",
     motion: MotionModel | None = None,
     timing: Timing | None = None,
@@ -106,10 +108,12 @@ def run_episode(
         Who; defaults are those of the classes.
     seed : int
         The same seed gives the same episode, bit for bit.
+    team_seed : int, optional
+        Where the planner's chance comes from, if not from ``seed``; the evader's always comes from ``seed``.
     capture : {"sight", "cell"}
-        What counts as capture, see ``CAPTURE_RULES``.
+        What counts as capture, see ``CAPTURE_RULES``. The belief counts on same-cell capture either way (Section V).
     motion : MotionModel, optional
-        What the pursuers believe of the evader's motion; by default area, speed and degree (Section V).
+        What the pursuers believe of the evader's motion; by default area, degree and its own speed (Section V).
     timing : Timing, optional
         Clocks.
     scenario : dict, optional
@@ -123,6 +127,23 @@ def run_episode(
         If the team cannot be placed, a body is too large for the routes of ``cells``, or a policy breaks its contract.
     """
     team, evader, timing = team or Team(), evader or Evader(), timing or Timing()
+    if plan is not cells.plan and not plan.space.equals(cells.plan.space):
+        raise GeomsimError(f"The cells were made of plan {cells.plan.name!r}, not of {plan.name!r}.")
+    check_pursuit(cells, team, evader, capture)
+    _check_steps(team, evader, timing)
+    _check_hops(SearchGraph.from_cells(cells), team, timing)
+    seeds = seed, seed if team_seed is None else team_seed
+    pursuit = _Pursuit(plan, cells, team, evader, seeds, capture, motion or AreaSpeedDegree(evader.speed), timing)
+    outcome = pursuit.run(progress)
+    if scenario is None:
+        from geomsim.scenario import describe
+
+        scenario = describe(plan, cells, team, evader, seed, capture, motion, timing)
+    return pursuit.log.episode(scenario, plan, cells, outcome)
+
+
+def check_pursuit(cells: CellMap, team: Team, evader: Evader, capture: str) -> None:
+    """Raise GeomsimError if there is no such capture rule, or a body is too large for the routes of ``cells``."""
     if capture not in CAPTURE_RULES:
         raise GeomsimError(f"There is no capture rule {capture!r}: {nearest(capture, CAPTURE_RULES)}")
     for who, radius in (("pursuer", team.radius), ("evader", evader.radius)):
@@ -130,13 +151,35 @@ def run_episode(
             raise GeomsimError(
                 f"The {who}'s radius, {radius:g} m, is larger than the {cells.radius:g} m that the cells were made for."
             )
-    pursuit = _Pursuit(plan, cells, team, evader, seed, capture, motion or AreaSpeedDegree(), timing)
-    outcome = pursuit.run(progress)
-    if scenario is None:
-        from geomsim.scenario import describe
 
-        scenario = describe(plan, cells, team, evader, seed, capture, motion, timing)
-    return pursuit.log.episode(scenario, plan, cells, outcome)
+
+def _check_steps(team: Team, evader: Evader, timing: Timing) -> None:
+    """Refuse clocks with which a body would miss walls, or a pursuit would outgrow memory or patience."""
+    for who, speed, radius in (("pursuer", team.speed, team.radius), ("evader", evader.speed, evader.radius)):
+        if speed * timing.physics_step > radius:
+            raise GeomsimError(
+                f"The {who} of radius {radius:g} m would move {speed * timing.physics_step:g} m, more than that, in "
+                f"a physics step of {timing.physics_step:g} s and might miss a wall: make the step shorter, the body "
+                "slower or larger."
+            )
+    bodies = team.pursuers + 1
+    positions = timing.limit / timing.physics_step * bodies
+    if positions > MOST_POSITIONS:
+        raise GeomsimError(
+            f"A pursuit of {timing.limit:g} s in steps of {timing.physics_step:g} s with {bodies} bodies may come to "
+            f"{positions:.3g} recorded positions, but {MOST_POSITIONS:,} are the most: make the time limit shorter or "
+            "the physics step longer."
+        )
+
+
+def _check_hops(graph: SearchGraph, team: Team, timing: Timing) -> None:
+    """Refuse belief steps so short, or pursuers so slow, that planning for the next cell would take for ever."""
+    steps = float(graph.length.max(initial=0.0)) / team.speed / timing.belief_step
+    if steps > MOST_BELIEF_STEPS:
+        raise GeomsimError(
+            f"A pursuer of {team.speed:g} m/s needs up to {steps:.3g} belief steps of {timing.belief_step:g} s from "
+            f"one cell to the next, but {MOST_BELIEF_STEPS:,} are the most: make the belief step longer."
+        )
 
 
 @dataclass(slots=True)
@@ -175,7 +218,7 @@ class _Log:
 
 
 class _Pursuit:
-    """The state of a running episode: the bodies, the belief and the plans."""
+    """A running episode: the team at work, and the evader."""
 
     def __init__(
         self,
@@ -183,37 +226,26 @@ class _Pursuit:
         cells: CellMap,
         team: Team,
         evader: Evader,
-        seed: int,
+        seeds: tuple[int, int],
         capture: str,
         motion: MotionModel,
         timing: Timing,
     ) -> None:
-        placing, self.chance, deciding = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(3))
+        theirs, ours = Streams.of(seeds[0]), Streams.of(seeds[1])
         starts = place_team(cells, team)
-        quarry = place_evader(cells, evader, starts, placing)
-        self.team, self.evader, self.capture, self.timing = team, evader, capture, timing
-        self.routes = Routes(cells)
-        self.walkers = [Walker(team.speed, self.routes.stay(cell, 0.0)) for cell in starts]
-        self.hunted = Walker(evader.speed, self.routes.stay(quarry, 0.0))
-        bodies = [*self.walkers, self.hunted]
-        at = np.array([walker.route.points[0] for walker in bodies])
-        self.world = World(plan.walls, at, np.array([team.radius] * team.pursuers + [evader.radius]))
-        graph = SearchGraph.from_cells(cells)
-        self.transition = motion.matrix(graph, timing.belief_step)
-        self.sight = SameCell()
-        speeds = (team.speed,) * team.pursuers
-        problem = SearchProblem(graph, motion, self.sight, speeds, timing.belief_step)
-        self.policy: Policy = team.planner.solve(problem, deciding)
-        self.graph = graph
-        self.belief = uniform_belief(graph, exclude=starts, component=int(graph.component[starts[0]]))
-        self.plans: list[tuple[int, ...]] = [()] * team.pursuers
-        self.headings = np.zeros(team.pursuers)
+        hideout = place_evader(cells, evader, starts, theirs.placing)
+        self.team, self.capture, self.timing = team, capture, timing
+        believed = believed_capture(team, timing)
+        self.work = Teamwork(cells, team, starts, motion, believed, timing.belief_step, [ours.deciding])
+        self.quarry = Quarry(plan.walls, self.work.routes, evader, [hideout], [theirs.moving])
+        self.patience = theirs.noticing.exponential(size=team.pursuers)
+        self.looked = np.zeros(team.pursuers)
         self.held_up: set[int] = set()
         self.log = _Log()
 
     def run(self, progress: Callable[[float, float], None] | None) -> Outcome:
         """Step until capture, the time limit or Ctrl-C."""
-        steps = math.ceil(self.timing.limit / self.timing.physics_step - 1e-9)
+        steps, dt = self.timing.steps, self.timing.physics_step
         status, captor = Status.TIME_LIMIT, None
         self._note(0.0)
         self._believe(0.0)
@@ -222,92 +254,54 @@ class _Pursuit:
             for k in range(steps):
                 if captor is not None:
                     break
-                self._move(k * self.timing.physics_step)
-                time = (k + 1) * self.timing.physics_step
+                self.quarry.robots = self.work.positions[0]
+                self.work.step(k * dt, dt)
+                self.quarry.step(dt)
+                time = (k + 1) * dt
                 self._note(time)
                 if (k + 1) % self.timing.steps_per_belief == 0:
-                    self._learn()
+                    self.work.learn()
                     self._believe(time)
                     if progress is not None:
-                        progress(time, float(self.belief[0]))
+                        progress(time, float(self.work.beliefs[0, 0]))
                 captor = self._captor()
         except KeyboardInterrupt:
             status = Status.INTERRUPTED
         return self._outcome(Status.CAPTURED if captor is not None else status, captor)
 
     def _note(self, time: float) -> None:
-        moving = np.hypot(*self.world.velocities[:-1].T) > 1e-3
-        course = np.arctan2(self.world.velocities[:-1, 1], self.world.velocities[:-1, 0])
-        self.headings = np.where(moving, course, self.headings)
-        self.log.headings.append(self.headings)
-        self.log.positions.append(self.world.positions)
-        self.log.occupied.append([walker.cell for walker in (*self.walkers, self.hunted)])
+        self.log.headings.append(self.work.headings[0])
+        self.log.positions.append(np.concatenate([self.work.positions[0], self.quarry.positions]))
+        self.log.occupied.append([*self.work.cells[0].tolist(), *self.quarry.cells.tolist()])
         self.log.times.append(time)
-
-    def _learn(self) -> None:
-        rows = [self.sight.row(self.graph, walker.cell) for walker in self.walkers]
-        self.belief = advance(self.belief, self.transition, rows)
+        idle = np.concatenate([self.work.idle[0], self.quarry.idle])
+        self.held_up.update(np.flatnonzero(idle >= HELD_UP).tolist())
 
     def _believe(self, time: float) -> None:
         self.log.belief_times.append(time)
-        self.log.beliefs.append(self.belief)
+        self.log.beliefs.append(self.work.beliefs[0])
 
     def _captor(self) -> int | None:
-        target = self.world.positions[-1]
-        for i, walker in enumerate(self.walkers):
+        # evaders are kept in single precision where thousands are, and a robot must see the same in both cases
+        target = self.quarry.positions[0].astype(np.float32).astype(np.float64)
+        hidden = int(self.quarry.cells[0])
+        for i, (eye, cell) in enumerate(zip(self.work.positions[0], self.work.cells[0].tolist(), strict=True)):
             if self.capture == "cell":
-                caught = walker.cell == self.hunted.cell
+                looks = cell == hidden
             else:
-                heading = float(self.headings[i])
-                caught = self.team.sensor.sees(self.world, self.world.positions[i], heading, target)
-            if caught:
-                return i
+                looks = self.team.sensor.sees(self.quarry.world, eye, float(self.work.headings[0, i]), target)
+            if looks:
+                self.looked[i] += self.team.sensor.attention * self.timing.physics_step
+                if self.looked[i] >= self.patience[i]:
+                    return i
         return None
-
-    def _move(self, time: float) -> None:
-        dt = self.timing.physics_step
-        bodies = [*self.walkers, self.hunted]
-        at, velocity = self.world.positions, self.world.velocities
-        for k, walker in enumerate(bodies):
-            walker.advance(at[k], velocity[k], dt)
-            if walker.idle >= HELD_UP:
-                self.held_up.add(k)
-        while any(walker.done for walker in self.walkers):
-            self._decide(time)
-        while self.hunted.done:
-            self.hunted.take(self.evader.model.next_route(self.routes, self.hunted.route.cells[1], self.chance))
-        wanted = np.array([walker.wanted(at[k], velocity[k], dt) for k, walker in enumerate(bodies)])
-        self.world.step(wanted, dt)
-
-    def _decide(self, time: float) -> None:
-        pursuers = tuple(
-            PursuerState(walker.route.cells[1])
-            if walker.done
-            else PursuerState(walker.route.cell(walker.aim), walker.route.cells[1], walker.time_left)
-            for walker in self.walkers
-        )
-        state = SearchState(time, self.belief, pursuers, tuple(self.plans))
-        decisions = self.policy.decide(state)
-        for i, (walker, decision) in enumerate(zip(self.walkers, decisions, strict=True)):
-            if not walker.done:
-                continue
-            here = walker.route.cells[1]
-            if decision is None or not decision.path or decision.path[0] not in (here, *self.routes.neighbours[here]):
-                raise GeomsimError(
-                    f"The policy of {type(self.team.planner).__name__} sent pursuer {i + 1} from cell {here + 1} to "
-                    "no neighbour of it; run planners.check_policy on it."
-                )
-            self.plans[i] = tuple(decision.path)
-            self.log.decisions.append((time, i, self.plans[i]))
-            to = decision.path[0]
-            stay = self.team.speed * self.timing.belief_step
-            walker.take(self.routes.stay(here, stay) if to == here else self.routes.between(here, to))
 
     def _outcome(self, status: Status, captor: int | None) -> Outcome:
         captured, last = status is Status.CAPTURED, len(self.log.times) - 1
         x, y = self.log.positions[last][-1].tolist()
         names = [f"Pursuer {i + 1}" for i in range(self.team.pursuers)] + ["The evader"]
         notes = tuple(f"{names[k]} was held up at a wall for {HELD_UP:g} s or more." for k in sorted(self.held_up))
+        self.log.decisions = [(choice.time, choice.pursuer, choice.path) for choice in self.work.choices]
         return Outcome(
             status=status,
             time=self.log.times[last],
@@ -317,3 +311,8 @@ class _Pursuit:
             predicted=float(self.log.beliefs[-1][0]),
             notes=notes,
         )
+
+
+def believed_capture(team: Team, timing: Timing) -> CaptureModel:
+    """Return what a team believes to catch: its own cell, as likely in a belief step as its sensor notices in one."""
+    return SameCell(-math.expm1(-team.sensor.attention * timing.belief_step))

@@ -15,7 +15,7 @@ from geomsim.evaders import EVADERS, make_evader_model
 from geomsim.pursuit import CAPTURE_RULES, Timing
 from geomsim.sensing import Sensor
 from geomsim.team import Evader, Team
-from maps import FloorPlan, GeomsimError, nearest, read_plan
+from maps import FloorPlan, GeomsimError, bundled_names, nearest, read_plan
 from planners import (
     PLANNERS,
     AreaSpeedDegree,
@@ -52,15 +52,21 @@ class Scenario(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
     plan: str = "office"
+    resolution: _Positive | None = None
+    level: str | None = None
+    units: str | None = None
+    structure: bool | None = None
     seed: Annotated[int, Field(ge=0)] = 0
     pursuers: Annotated[int, Field(ge=1, le=1000)] = 2
     start: tuple[int, ...] = ()
     planner: str = "decoupled"
     cost: str | None = None
     depth: Annotated[int, Field(ge=1)] | None = None
+    options: dict[str, bool | int | float | str] = {}
     capture: str = "sight"
     range: Annotated[float, Field(gt=0)] = math.inf
     fov_degrees: Annotated[float, Field(gt=0, le=360)] = 360.0
+    detection: Annotated[float, Field(gt=0, le=1)] = 1.0
     speed: _Positive = 1.0
     radius: _Positive = 0.2
     evader: str = "centroid-boundary"
@@ -68,7 +74,9 @@ class Scenario(BaseModel):
     evader_speed: _Positive = 1.0
     evader_radius: _Positive = 0.2
     motion: str = "area-speed-degree"
+    motion_speed: _Positive | None = None
     method: str = "exact"
+    clearance: _Positive | None = None
     time_limit: _Positive = 1800.0
     belief_step: _Positive = 1.0
     physics_step: _Positive = 0.1
@@ -76,6 +84,8 @@ class Scenario(BaseModel):
     @field_validator("start", mode="before")
     @classmethod
     def _listed(cls, value: object) -> object:
+        if isinstance(value, int) and not isinstance(value, bool):
+            return (value,)
         return tuple(value) if isinstance(value, list) else value
 
     @field_validator("range", mode="before")
@@ -96,12 +106,19 @@ class Scenario(BaseModel):
         """Make the team of pursuers."""
         return Team(
             pursuers=self.pursuers,
-            planner=make_planner(self.planner, cost=self.cost, depth=self.depth),
+            planner=self.method_of_planning(),
             start=self.start,
             speed=self.speed,
             radius=self.radius,
-            sensor=Sensor(self.range, math.radians(self.fov_degrees)),
+            sensor=Sensor(self.range, math.radians(self.fov_degrees), self.detection),
         )
+
+    def method_of_planning(self) -> Planner:
+        """Make the planner, with its parameters."""
+        clash = next((key for key in ("cost", "depth") if key in self.options), None)
+        if clash is not None:
+            raise ScenarioError(f"{clash} is a key of its own, not one of the planner's options.")
+        return make_planner(self.planner, cost=self.cost, depth=self.depth, **self.options)
 
     def quarry(self) -> Evader:
         """Make the evader."""
@@ -114,7 +131,7 @@ class Scenario(BaseModel):
 
     def belief_motion(self) -> MotionModel:
         """Make the motion model that the pursuers believe in."""
-        return MOTIONS[self.motion](self.evader_speed)
+        return MOTIONS[self.motion](self.motion_speed or self.evader_speed)
 
     def timing(self) -> Timing:
         """Make the clocks."""
@@ -122,14 +139,16 @@ class Scenario(BaseModel):
 
     def place(self) -> tuple[FloorPlan, CellMap]:
         """Read the plan and cut it."""
-        plan = read_plan(self.plan)
-        return plan, convex_cells(plan, method=self.method, radius=max(self.radius, self.evader_radius))
+        plan = read_plan(
+            self.plan, resolution=self.resolution, level=self.level, units=self.units, structure=self.structure
+        )
+        return plan, convex_cells(
+            plan, method=self.method, radius=self.clearance or max(self.radius, self.evader_radius)
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """Return what a scenario file would hold: plain values, a planner's defaults told, no keys that mean "none"."""
-        told = self.model_dump(mode="python") | _planner_keys(
-            make_planner(self.planner, cost=self.cost, depth=self.depth)
-        )
+        told = self.model_dump(mode="python") | _planner_keys(self.method_of_planning())
         told["start"] = list(self.start)
         return _told(told)
 
@@ -146,7 +165,8 @@ def read_scenario(path: Path | None, flags: dict[str, Any]) -> Scenario:
     Parameters
     ----------
     path : Path or None
-        A TOML file; None for the defaults. A relative plan file in it is looked for beside it.
+        A TOML file; None for the defaults. A relative plan file in it is looked for beside it first. The scenario
+        returned has a plan file's whole path, so that what is written of it holds in any folder.
     flags : dict
         Keys and values that were given on the command line.
 
@@ -164,9 +184,15 @@ def read_scenario(path: Path | None, flags: dict[str, Any]) -> Scenario:
         if key not in Scenario.model_fields:
             raise ScenarioError(f"{path}: unknown key {key!r}; {nearest(key, Scenario.model_fields)}")
     try:
-        return Scenario.model_validate(told | flags)
+        scenario = Scenario.model_validate(told | flags)
     except ValidationError as exc:
         raise ScenarioError(_sentence(exc, path, flags)) from exc
+    if scenario.plan.endswith(".toml"):
+        raise ScenarioError(f"{scenario.plan} is a scenario, not a floor plan: give it with --scenario.")
+    file = Path(scenario.plan)
+    if scenario.plan in bundled_names() or not file.is_file():
+        return scenario
+    return scenario.model_copy(update={"plan": str(file.resolve())})
 
 
 def _load(path: Path) -> dict[str, Any]:
@@ -174,7 +200,7 @@ def _load(path: Path) -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as exc:
         raise ScenarioError(f"Cannot read the scenario {path}: {exc.strerror}.") from exc
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as exc:
+    except (ValueError, RecursionError) as exc:  # wrong syntax, no text, a number of thousands of digits, or too deep
         raise ScenarioError(f"{path} is not valid TOML: {exc}.") from exc
 
 
@@ -213,6 +239,7 @@ def describe(
         "capture": capture,
         "range": team.sensor.range,
         "fov_degrees": math.degrees(team.sensor.field_of_view),
+        "detection": team.sensor.detection,
         "speed": team.speed,
         "radius": team.radius,
         "evader": kinds.get(type(evader.model), type(evader.model).__name__),
@@ -220,7 +247,9 @@ def describe(
         "evader_speed": evader.speed,
         "evader_radius": evader.radius,
         "motion": "area-speed-degree" if motion is None else motions.get(type(motion), type(motion).__name__),
+        "motion_speed": None if (believed := getattr(motion, "speed", None)) == evader.speed else believed,
         "method": cells.method,
+        "clearance": None if cells.radius == max(team.radius, evader.radius) else cells.radius,
         "time_limit": timing.limit,
         "belief_step": timing.belief_step,
         "physics_step": timing.physics_step,
@@ -232,8 +261,9 @@ def _planner_keys(planner: Planner) -> dict[str, Any]:
     """Tell a planner by its registered name, a user's own by its class's, and its parameters."""
     names = {entry.make: name for name, entry in PLANNERS.items()}
     told = {key: getattr(planner, key) for key in getattr(planner, "__dataclass_fields__", ())}
-    return {"planner": names.get(type(planner), type(planner).__name__), **told}
+    own = {key: told.pop(key) for key in ("cost", "depth") if key in told}
+    return {"planner": names.get(type(planner), type(planner).__name__), **own, "options": told}
 
 
 def _told(keys: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in keys.items() if value is not None and value != math.inf and value != []}
+    return {key: value for key, value in keys.items() if value not in (None, math.inf, [], {})}

@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geomsim.drawing.figures import Figures
 from geomsim.drawing.floor import Floor
 from geomsim.drawing.legend import draw_colour_bar, draw_scale_bar
 from geomsim.drawing.moment import Timeline, shares
 from geomsim.drawing.playback import write_png
+from geomsim.drawing.raster import Image, Raster, blank
 from geomsim.drawing.scale import ProbabilityScale
-from geomsim.drawing.strokes import Image, blank
-from geomsim.drawing.text import draw_text
-from geomsim.drawing.theme import DrawingError, find_theme
-from geomsim.drawing.viewport import Box
+from geomsim.drawing.surface import Surface
+from geomsim.drawing.theme import DrawingError, Theme, find_theme
+from geomsim.drawing.vector import VectorSheet, is_vector
+from geomsim.drawing.vectorfloor import VectorFloor
+from geomsim.drawing.viewport import Box, Viewport
 from geomsim.episode import Episode
 
 __all__ = ["draw_snapshots", "snapshot_times", "write_snapshots"]
+
+AnySurface = TypeVar("AnySurface", bound=Surface)
 
 # A sheet that is this many times as wide as high suits a page.
 _ASPECT = 1.4
@@ -35,16 +42,21 @@ def write_snapshots(
     width: int = 2400,
     theme: str = "light",
 ) -> Path:
-    """Write a contact sheet as PNG; see :func:`draw_snapshots` for the options.
+    """Write a contact sheet as ``.png``, ``.svg`` or ``.pdf``; see :func:`draw_snapshots` for the options.
 
     Raises
     ------
     GeomsimError
         If an option is out of range or the file cannot be written.
     """
-    if path.suffix.lower() != ".png":
-        raise DrawingError(f"A contact sheet's name must end in .png, but is {path.name!r}.")
-    return write_png(draw_snapshots(episode, times=times, panels=panels, width=width, theme=theme), path)
+    if not is_vector(path):
+        return write_png(draw_snapshots(episode, times=times, panels=panels, width=width, theme=theme), path)
+    layout = _Layout.of(episode, snapshot_times(episode, times, panels), width)
+    colours = find_theme(theme)
+    sheet = VectorSheet(layout.width, layout.height, colours.page)
+    floor = VectorFloor(episode.cells, layout.panel, colours, 0.8 * layout.unit, portals=False)
+    _draw_sheet(sheet, episode, layout, colours, floor.view, floor.paint)
+    return sheet.save(path)
 
 
 def draw_snapshots(
@@ -80,51 +92,75 @@ def draw_snapshots(
     DrawingError
         If a time is outside the episode or there is nothing to draw.
     """
-    chosen = snapshot_times(episode, times, panels)
+    layout = _Layout.of(episode, snapshot_times(episode, times, panels), width)
     colours = find_theme(theme)
-    x0, y0, x1, y1 = episode.plan.bounds
-    columns = _columns(len(chosen), (x1 - x0) / (y1 - y0))
-    rows = math.ceil(len(chosen) / columns)
-    unit = width / 850
-    margin, gap, caption, foot = round(10 * unit), round(16 * unit), round(24 * unit), round(58 * unit)
-    panel_width = (width - 2 * margin - (columns - 1) * gap) // columns
-    panel_height = round(panel_width * (y1 - y0) / (x1 - x0))
-    panel_height = min(panel_height, 4 * panel_width)
-    sheet = blank(width, 2 * margin + rows * (panel_height + caption) + foot, colours.page)
+    sheet = Raster(blank(layout.width, layout.height, colours.page))
+    floor = Floor(episode.cells, layout.panel, colours, 0.8 * layout.unit, portals=False)
+    _draw_sheet(sheet, episode, layout, colours, floor.view, floor.paint)
+    return sheet.image
 
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """Where things are on a sheet, in pixels; ``panel`` is the box of every panel within its own corner."""
+
+    times: list[float]
+    width: int
+    height: int
+    unit: float
+    panel: Box
+    corners: list[tuple[int, int]]
+
+    @classmethod
+    def of(cls, episode: Episode, times: list[float], width: int) -> _Layout:
+        x0, y0, x1, y1 = episode.plan.bounds
+        columns = _columns(len(times), (x1 - x0) / (y1 - y0))
+        rows = math.ceil(len(times) / columns)
+        unit = width / 850
+        margin, gap, caption, foot = round(10 * unit), round(16 * unit), round(24 * unit), round(58 * unit)
+        wide = (width - 2 * margin - (columns - 1) * gap) // columns
+        high = min(round(wide * (y1 - y0) / (x1 - x0)), 4 * wide)
+        places = [divmod(k, columns) for k in range(len(times))]
+        corners = [(margin + column * (wide + gap), margin + row * (high + caption)) for row, column in places]
+        return cls(times, width, 2 * margin + rows * (high + caption) + foot, unit, Box(0, 0, wide, high), corners)
+
+
+def _draw_sheet(
+    sheet: AnySurface,
+    episode: Episode,
+    layout: _Layout,
+    colours: Theme,
+    view: Viewport,
+    paint: Callable[[AnySurface, NDArray[np.uint8]], None],
+) -> None:
+    unit, panel = layout.unit, layout.panel
     scale = ProbabilityScale.of(episode.beliefs)
-    box = Box(0, 0, panel_width, panel_height)
-    floor = Floor(episode.cells, box, colours, 0.8 * unit, portals=False)
-    figures = Figures(floor.view, colours, 0.85 * unit)
+    figures = Figures(view, colours, 0.85 * unit)
     timeline = Timeline(episode)
-    for k, time in enumerate(chosen):
-        left = margin + (k % columns) * (panel_width + gap)
-        top = margin + (k // columns) * (panel_height + caption)
-        panel = sheet[top : top + panel_height, left : left + panel_width]
+    for time, (left, top) in zip(layout.times, layout.corners, strict=True):
         moment = timeline.at(time)
-        floor.paint(panel, colours.ramp[scale.steps(shares(episode.beliefs[moment.step]))])
+        part = sheet.part(Box(left, top, left + panel.width, top + panel.height))
+        paint(part, colours.ramp[scale.steps(shares(episode.beliefs[moment.step]))])
         team = range(len(moment.pursuers))
         for r in team:
-            figures.trail(panel, r, moment.trails[r])
+            figures.trail(part, r, moment.trails[r])
+        told = f"t = {time:.1f} s"
         by = episode.outcome.pursuer
         if moment.captured and by is not None:
-            figures.spotting(panel, moment.pursuers[by], moment.evader)
-        figures.evader(panel, moment.evader, captured=moment.captured)
-        for r in team:
-            figures.robot(panel, r, moment.pursuers[r], float(moment.headings[r]), prefix="P")
-        told = f"t = {time:.1f} s"
-        if moment.captured and by is not None:
+            figures.spotting(part, moment.pursuers[by], moment.evader)
             told += f" · captured by P{by + 1}"
-        at = (left + panel_width / 2, top + panel_height + 12 * unit)
-        draw_text(sheet, told, at, 13 * unit, colours.text, "centre")
+        figures.evader(part, moment.evader, captured=moment.captured)
+        for r in team:
+            figures.robot(part, r, moment.pursuers[r], float(moment.headings[r]), prefix="P")
+        at = (left + panel.width / 2, top + panel.height + 12 * unit)
+        sheet.text(told, at, 13 * unit, colours.text, "centre")
 
-    bottom = Box(margin, sheet.shape[0] - foot + round(6 * unit), width - margin, sheet.shape[0] - margin // 2)
-    bar = Box(bottom.right - round(300 * unit), bottom.top, bottom.right - round(8 * unit), bottom.bottom)
-    title = "chance that the evader is in a cell, if not captured"
-    draw_colour_bar(sheet, bar, scale, colours, unit, title)
-    metres = Box(bottom.left, bottom.top, bottom.left + round(200 * unit), bottom.top + round(32 * unit))
-    draw_scale_bar(sheet, metres, floor.view.scale, colours, unit)
-    return sheet
+    margin, top = round(10 * unit), layout.height - round(52 * unit)
+    right = layout.width - margin - round(8 * unit)
+    bar = Box(right - round(292 * unit), top, right, layout.height)
+    draw_colour_bar(sheet, bar, scale, colours, unit, "chance that the evader is in a cell, if not captured")
+    metres = Box(margin, top, margin + round(200 * unit), top + round(32 * unit))
+    draw_scale_bar(sheet, metres, view.scale, colours, unit)
 
 
 def snapshot_times(episode: Episode, times: Sequence[float] | None, panels: int) -> list[float]:
@@ -139,7 +175,7 @@ def snapshot_times(episode: Episode, times: Sequence[float] | None, panels: int)
     if times is None:
         if not 1 <= panels <= 60:
             raise DrawingError(f"A contact sheet has 1 to 60 panels, not {panels}.")
-        return [float(t) for t in np.linspace(0.0, end, panels)] if panels > 1 else [end]
+        return [float(t) for t in np.unique(np.linspace(0.0, end, panels))] if panels > 1 else [end]
     if not times:
         raise DrawingError("A contact sheet needs at least one time.")
     for time in times:

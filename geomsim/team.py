@@ -28,7 +28,8 @@ class Team:
         How they coordinate.
     start : tuple of int
         Numbers of the cells in which they start, from 1; one number is for all of them, none leaves the choice to the
-        plan (its own start cells, or the lowest number of the largest connected part).
+        plan (its own start cells, taken in turn; without any, all start in the cell of lowest number in the largest
+        connected part).
     speed : float
         Metres a second.
     radius : float

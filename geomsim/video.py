@@ -13,7 +13,7 @@ from av.video.reformatter import Colorspace
 from geomsim.drawing.frame import FrameDrawer, FrameStyle
 from geomsim.drawing.palette import Palette
 from geomsim.drawing.playback import Playback, Progress
-from geomsim.drawing.strokes import Image
+from geomsim.drawing.raster import Image
 from geomsim.drawing.theme import DrawingError
 from geomsim.episode import Episode
 from geomsim.files import replacing

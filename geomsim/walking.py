@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from discretize import CellMap
 
-__all__ = ["Route", "Routes", "Walker"]
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+__all__ = ["Route", "Routes", "Walkers"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Route:
     """The way from the checkpoint of one cell to that of a neighbour, or a stay.
 
@@ -36,6 +42,13 @@ class Route:
     crossing: float
     length: float
 
+    @cached_property
+    def slopes(self) -> NDArray[np.float64]:
+        """Metres of x and of y for each metre of way after each point, shape (k, 2); zero where the route stands."""
+        gone, apart = np.diff(self.marks), np.hypot(*np.diff(self.points, axis=0).T)
+        rate = np.diff(self.points, axis=0) / np.where((gone > 0) & (apart > 0), gone, np.inf)[:, np.newaxis]
+        return np.concatenate([rate, np.zeros((1, 2))])
+
     def at(self, way: float) -> NDArray[np.float64]:
         """Return the point that lies ``way`` metres along the route, shape (2,)."""
         return np.array([np.interp(way, self.marks, self.points[:, 0]), np.interp(way, self.marks, self.points[:, 1])])
@@ -52,6 +65,8 @@ class Routes:
         self._cells = cells
         self._portals = {portal.cells: portal for portal in cells.portals}
         self._made: dict[tuple[int, int], Route] = {}
+        self._stays: dict[tuple[int, float], Route] = {}
+        self._trees: dict[int, tuple[NDArray[np.float64], NDArray[np.int32]]] = {}
         joined: list[list[int]] = [[] for _ in cells.cells]
         for i, j in cells.edges:
             joined[i].append(j)
@@ -75,80 +90,146 @@ class Routes:
 
     def stay(self, cell: int, length: float) -> Route:
         """Return a stay at a checkpoint for as long as going ``length`` metres would take."""
-        here = self.checkpoint(cell)
-        return Route((cell, cell), np.stack([here, here]), np.array([0.0, length]), np.inf, length)
+        key = (cell, length)
+        if key not in self._stays:
+            here = self.checkpoint(cell)
+            self._stays[key] = Route((cell, cell), np.stack([here, here]), np.array([0.0, length]), np.inf, length)
+        return self._stays[key]
+
+    def distances(self, start: int) -> NDArray[np.float64]:
+        """Return the way from the checkpoint of a cell to every other, shape (N,), metres; infinite where none is."""
+        return self._tree(start)[0]
+
+    def path(self, start: int, end: int) -> tuple[int, ...]:
+        """Return the cells on the shortest way from one cell to another, without the first; none if there is none."""
+        before = self._tree(start)[1]
+        path: list[int] = []
+        while end != start and end >= 0:
+            path.append(end)
+            end = int(before[end])
+        return tuple(reversed(path)) if end == start else ()
+
+    def _tree(self, start: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+        if start not in self._trees:
+            from scipy.sparse.csgraph import dijkstra
+
+            way, before = dijkstra(self._ways, directed=False, indices=[start], return_predecessors=True)
+            self._trees[start] = way[0], before[0]
+        return self._trees[start]
+
+    @cached_property
+    def _ways(self) -> csr_array[Any, tuple[int, int]]:
+        from scipy.sparse import csr_array
+
+        n, edges = len(self.neighbours), self._cells.edges
+        i, j = np.array(edges, dtype=np.intp).reshape(-1, 2).T
+        return csr_array(([self.between(a, b).length for a, b in edges], (i, j)), shape=(n, n))
 
 
-@dataclass(slots=True)
-class Walker:
-    """Steers one body along routes.
+class Walkers:
+    """Steers K bodies along routes, all of them in each NumPy call.
 
-    What is wanted of a body shows in its position two steps later (:meth:`geomsim.world.World.step`), so the walker
+    What is wanted of a body shows in its position two steps later (:meth:`geomsim.world.World.step`), so a walker
     aims at where the body should be then. The body thus goes its way at exactly its speed, and the end of a route is
-    reached, and the next one asked for, two steps before the body is there.
+    reached, and the next one asked for, two steps before the body is there. How many bodies there are changes
+    nothing in how one of them goes.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (K,)
+        Metres a second.
+    starts : sequence of Route
+        K routes on which the aims begin; a stay of no length if the first route is to be chosen at once.
 
     Attributes
     ----------
-    speed : float
-        Metres a second.
-    route : Route
-        The route that the aim is on.
-    aim : float
+    aim : ndarray, shape (K,)
         Way of the aim along the route, metres.
-    ahead : list of (point, cell)
-        Where the body should be now and one step from now.
-    idle : float
+    cells : ndarray of int32, shape (K,)
+        The cell in which each body is, counted from 0.
+    ends : ndarray of int32, shape (K,)
+        The cell at whose checkpoint the route ends.
+    idle : ndarray, shape (K,)
         Seconds since the aim last moved; it waits while a body is held up.
     """
-
-    speed: float
-    route: Route
-    aim: float = 0.0
-    ahead: list[tuple[NDArray[np.float64], int]] = field(default_factory=list)
-    idle: float = 0.0
 
     #: a body further than this from where it should be is waited for, metres
     PATIENCE = 0.1
 
-    def __post_init__(self) -> None:
-        start = (self.route.points[0], self.route.cells[0])
-        self.ahead = [start, start]
+    def __init__(self, speeds: NDArray[np.float64], starts: Sequence[Route]) -> None:
+        k = len(starts)
+        self.speeds = np.array(speeds, dtype=np.float64)
+        self.aim, self.idle, self._length, self._crossing = np.zeros(k), np.zeros(k), np.zeros(k), np.zeros(k)
+        self._begins, self.ends = np.zeros(k, dtype=np.int32), np.zeros(k, dtype=np.int32)
+        # polylines, padded to the longest one met so far: points, ways to them, and metres of x, y per metre of way
+        self._points, self._slopes = np.zeros((k, 2, 2)), np.zeros((k, 2, 2))
+        self._marks = np.full((k, 2), np.inf)
+        self._rows = np.arange(k)
+        for i, route in enumerate(starts):
+            self._follow(i, route)
+        # where the bodies should be now and one step from now
+        self._now = self._next = self._points[:, 0].copy()
+        self.cells = self._next_cells = self._begins.copy()
 
     @property
-    def cell(self) -> int:
-        """The cell in which the body is, counted from 0."""
-        return self.ahead[0][1]
+    def done(self) -> NDArray[np.bool_]:
+        """Whether the aim has come to the end of the route, so that the next one is needed; shape (K,)."""
+        return self.aim >= self._length
 
     @property
-    def done(self) -> bool:
-        """Whether the aim has come to the end of the route, so that the next one is needed."""
-        return self.aim >= self.route.length
+    def time_left(self) -> NDArray[np.float64]:
+        """Seconds until the aim comes to the end of the route, shape (K,)."""
+        return np.maximum(0.0, self._length - self.aim) / self.speeds
 
     @property
-    def time_left(self) -> float:
-        """Seconds until the aim comes to the end of the route."""
-        return max(0.0, self.route.length - self.aim) / self.speed
+    def aimed_cells(self) -> NDArray[np.int32]:
+        """The cell in which each aim is, counted from 0, shape (K,)."""
+        return np.where(self.aim < self._crossing, self._begins, self.ends)
 
-    def take(self, route: Route) -> None:
-        """Go on along another route; what the aim had left over of the step is gone along it."""
-        self.aim = max(0.0, self.aim - self.route.length)
-        self.route = route
+    def take(self, k: int, route: Route) -> None:
+        """Let walker ``k`` go on along another route; what its aim had left over of the step is gone along it."""
+        self.aim[k] = max(0.0, self.aim[k] - self._length[k])
+        self._follow(k, route)
 
-    def advance(self, position: NDArray[np.float64], velocity: NDArray[np.float64], dt: float) -> None:
-        """Move the aim on by one step, unless the body is held up."""
-        behind = np.hypot(*(position + velocity * dt - self.ahead[1][0]))
-        if behind <= self.PATIENCE:
-            self.aim += self.speed * dt
-            self.idle = 0.0
-        else:
-            self.idle += dt
+    def advance(self, positions: NDArray[np.float64], velocities: NDArray[np.float64], dt: float) -> None:
+        """Move the aims on by one step, but for bodies that are held up; both arrays of shape (K, 2)."""
+        off = positions + velocities * dt - self._next
+        going = np.hypot(off[:, 0], off[:, 1]) <= self.PATIENCE
+        self.aim += np.where(going, self.speeds * dt, 0.0)
+        self.idle = np.where(going, 0.0, self.idle + dt)
 
-    def wanted(self, position: NDArray[np.float64], velocity: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
-        """Return the velocity that brings the body to the aim, at most its speed; shape (2,), metres a second.
+    def wanted(self, positions: NDArray[np.float64], velocities: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+        """Return the velocities that bring the bodies to the aims, at most their speeds; (K, 2), metres a second.
 
         To be asked once a step, after :meth:`advance` and before the world's step.
         """
-        self.ahead = [self.ahead[1], (self.route.at(self.aim), self.route.cell(self.aim))]
-        velocity = (self.ahead[1][0] - (position + velocity * dt)) / dt
-        fast = float(np.hypot(*velocity))
-        return velocity if fast <= self.speed else velocity * (self.speed / fast)
+        leg = np.count_nonzero(self._marks[:, 1:] <= self.aim[:, np.newaxis], axis=1)
+        along = self.aim - self._marks[self._rows, leg]
+        aims = self._points[self._rows, leg] + along[:, np.newaxis] * self._slopes[self._rows, leg]
+        self._now, self._next = self._next, aims
+        self.cells, self._next_cells = self._next_cells, self.aimed_cells
+        wanted: NDArray[np.float64] = (aims - (positions + velocities * dt)) / dt
+        fast = np.hypot(wanted[:, 0], wanted[:, 1])
+        over = fast > self.speeds
+        if over.any():
+            wanted[over] *= (self.speeds[over] / fast[over])[:, np.newaxis]
+        return wanted
+
+    def keep(self, which: NDArray[np.intp]) -> None:
+        """Go on with some of the walkers only, given by their indices in rising order."""
+        for name in ("speeds", "aim", "idle", "_length", "_crossing", "_begins", "ends", "_points", "_slopes"):
+            setattr(self, name, getattr(self, name)[which])
+        for name in ("_marks", "_now", "_next", "cells", "_next_cells"):
+            setattr(self, name, getattr(self, name)[which])
+        self._rows = np.arange(len(which))
+
+    def _follow(self, k: int, route: Route) -> None:
+        n = len(route.marks)
+        if n > self._marks.shape[1]:
+            more = ((0, 0), (0, n - self._marks.shape[1]))
+            self._points, self._slopes = (np.pad(a, (*more, (0, 0))) for a in (self._points, self._slopes))
+            self._marks = np.pad(self._marks, more, constant_values=np.inf)
+        self._points[k, :n], self._slopes[k, :n] = route.points, route.slopes
+        self._marks[k, :n], self._marks[k, n:] = route.marks, np.inf
+        self._length[k], self._crossing[k] = route.length, route.crossing
+        self._begins[k], self.ends[k] = route.cells

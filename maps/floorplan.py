@@ -6,6 +6,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from maps.showing import svg_picture
+
 __all__ = ["FloorPlan", "FreeSpace", "Label", "Repair"]
 
 FreeSpace = shapely.Polygon | shapely.MultiPolygon
@@ -106,3 +108,10 @@ class FloorPlan:
         coords, ring = shapely.get_coordinates(rings, return_index=True)
         follows = ring[1:] == ring[:-1]
         return np.stack([coords[:-1][follows], coords[1:][follows]], axis=1)
+
+    def _repr_svg_(self) -> str:
+        """Return a picture for a notebook: free space, walls, doors, and repairs in red."""
+        drawn: list[tuple[shapely.Geometry, str]] = [(self.space, 'fill="#eef3fa" stroke="#232a35" stroke-width="2"')]
+        drawn += [(door, 'fill="none" stroke="#00838f" stroke-width="2"') for door in self.doors]
+        drawn += [(repair.geometry, 'fill="none" stroke="#d0103a"') for repair in self.repairs]
+        return svg_picture(drawn, self.bounds)

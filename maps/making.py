@@ -84,9 +84,8 @@ def make_plan(
         cut = shapely.union_all([_mend(wall, done) for wall in walls], grid_size=GRID)
         free = _without(free, cut)
     free = _without_needles(free, done)
-    free = _without_specks(free, where, done)
     simple = shapely.simplify(free, GRID / 2, preserve_topology=True)
-    free = _canonical(simple if simple.is_valid else free)
+    free = _canonical(_without_specks(simple if simple.is_valid else free, where, done))
     return FloorPlan(
         name=name,
         space=free,
@@ -139,6 +138,8 @@ def _check_size(polygons: list[shapely.Polygon], where: str) -> None:
 
 def _mend(polygon: shapely.Polygon, done: list[Repair]) -> BaseGeometry:
     """Make one polygon valid on the millimetre grid, and list what that took."""
+    # Numbers far below a millimetre, denormal ones above all, upset the geometry library.
+    polygon = shapely.transform(polygon, lambda xy: np.round(xy, 9))
     valid: BaseGeometry = polygon
     broken = not polygon.is_valid
     if broken:

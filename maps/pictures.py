@@ -12,7 +12,7 @@ from maps.errors import PlanError
 
 __all__ = ["MOST_PIXELS", "read_picture"]
 
-MOST_PIXELS = 100_000_000
+MOST_PIXELS = 40_000_000
 
 
 def read_picture(path: Path, where: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:

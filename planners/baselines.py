@@ -15,11 +15,20 @@ __all__ = ["Random", "Stationary"]
 
 @dataclass(frozen=True, slots=True)
 class Random:
-    """Every pursuer goes to a uniformly random neighbour of its cell (Section V-A, the random method)."""
+    """Every pursuer goes to a uniformly random neighbour of its cell (Section V-A, the random method).
+
+    Attributes
+    ----------
+    wait : bool
+        Whether to wait for one belief step is one more choice, as likely as any neighbour; so that the pursuer moves
+        as an evader with uniform motion does.
+    """
+
+    wait: bool = False
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> RandomPolicy:
         """Prepare a policy that draws from ``rng``."""
-        return RandomPolicy(problem.graph, rng)
+        return RandomPolicy(problem.graph, self.wait, rng)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +36,7 @@ class RandomPolicy:
     """The policy of :class:`Random` for one problem."""
 
     graph: SearchGraph
+    wait: bool
     rng: np.random.Generator = field(repr=False)
 
     def decide(self, state: SearchState) -> Sequence[Decision | None]:
@@ -34,8 +44,9 @@ class RandomPolicy:
         return [self._hop(p.cell) if p.target is None else None for p in state.pursuers]
 
     def _hop(self, cell: int) -> Decision:
-        ways = self.graph.neighbours(cell)
-        return Decision((int(self.rng.choice(ways)) if len(ways) else cell,))
+        ways = self.graph.neighbours(cell).tolist()
+        choices = [cell, *ways] if self.wait or not ways else ways
+        return Decision((int(self.rng.choice(choices)),))
 
 
 @dataclass(frozen=True, slots=True)

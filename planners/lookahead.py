@@ -8,19 +8,15 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from maps import GeomsimError
 from planners.costs import Cost, Hops, find_cost
 from planners.policy import Decision, PursuerState, SearchProblem, SearchState
 from planners.simulation import SearchModel
+from planners.team import at_least
 
-__all__ = ["Decoupled", "PlannerError"]
+__all__ = ["Decoupled"]
 
 # Costs that differ by less than this share are equal: the order of a sum must not decide between mirror images.
 TIE = 1e-9
-
-
-class PlannerError(GeomsimError):
-    """A planner that does not exist, or a parameter that it cannot take."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +55,7 @@ class Decoupled:
 
     def __post_init__(self) -> None:
         find_cost(self.cost)
-        if self.depth < 1:
-            raise PlannerError(f"The depth of a lookahead must be at least 1; got {self.depth}.")
+        at_least(1, depth=self.depth)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> DecoupledPolicy:
         """Prepare a policy; ``rng`` decides between paths of equal cost."""
@@ -92,8 +87,8 @@ class DecoupledPolicy:
     def _under_way(self, pursuer: int, cell: int, target: int) -> PursuerState:
         if target == cell:
             return PursuerState(cell)
-        hops = self.model.hops[pursuer].steps[self.model.graph.edge(cell, target)]
-        return PursuerState(cell, target, float(hops) * self.model.step)
+        steps = self.model.moves[pursuer].steps[self.model.move(cell, target)]
+        return PursuerState(cell, target, float(steps) * self.model.step)
 
     def _best_path(self, pursuer: int, cell: int, belief: NDArray[np.float64], unseen: NDArray[np.float64]) -> Decision:
         if len(self.model.graph.neighbours(cell)) == 0:
@@ -160,7 +155,7 @@ def grow_tree(
     depth : int
         Number of hops.
     """
-    graph, hops = model.graph, model.hops[pursuer]
+    graph, moves = model.graph, model.moves[pursuer]
     tree = PathTree([], [], [])
     cells, total = np.array([cell], dtype=np.intp), np.zeros(1)
     beliefs, clock = belief[np.newaxis], np.zeros(1, dtype=np.intp)
@@ -168,12 +163,13 @@ def grow_tree(
         count = graph.degree[cells]
         parent = np.repeat(np.arange(len(cells)), count)
         edge = np.arange(len(parent)) + np.repeat(graph.indptr[cells] - (np.cumsum(count) - count), count)
-        order = np.argsort(-hops.steps[edge], kind="stable")
-        parent, edge = parent[order], edge[order]
+        move = edge + cells[parent] + 1
+        order = np.argsort(-moves.steps[move], kind="stable")
+        parent, edge, move = parent[order], edge[order], move[order]
         cells = graph.indices[edge]
         before = beliefs[parent]
-        beliefs = _simulate(model, beliefs, parent, clock, hops.steps[edge], hops.views[edge], unseen)
-        clock = clock[parent] + hops.steps[edge]
+        beliefs = _simulate(model, beliefs, parent, clock, moves.steps[move], moves.views[move], unseen)
+        clock = clock[parent] + moves.steps[move]
         chance = model.looks.chance(before, cells)
         total = total[parent] + cost(Hops(before, beliefs, chance, graph.length[edge]))
         tree.cells.append(cells)
@@ -193,14 +189,14 @@ def _simulate(
 ) -> NDArray[np.float64]:
     """Return the beliefs after one more hop each; hops are sorted, those of most steps first."""
     # The first dispersion is the same for all hops from one node, so it is done before they part.
-    after: NDArray[np.float64] = (beliefs @ model.dispersion)[parent]
+    after: NDArray[np.float64] = model.disperse(beliefs)[parent]
     clock = clock[parent]
     last = len(unseen) - 1
     for k in range(int(steps[0])):
         going = int(np.searchsorted(-steps, -k, side="left"))
         active = after[:going]
         if k > 0:
-            active[:] = active @ model.dispersion
+            active[:] = model.disperse(active)
         active *= unseen[np.minimum(clock[:going] + k, last)] if last else unseen[0]
-        model.looks.apply(active, views[:going, k])
+        model.looks.take(active, views[:going, k])
     return after

@@ -1,6 +1,6 @@
 """README is true: its commands and code run, and print what it says they print."""
 
-import json
+import os
 import re
 import shlex
 import subprocess
@@ -16,15 +16,15 @@ BLOCKS = re.findall(r"```(\w+)\n(.*?)```", README.read_text(encoding="utf-8"), r
 COMMANDS = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines() if line.startswith("geomsim ")]
 PROGRAMS = [text for kind, text in BLOCKS if kind == "python"]
 PRINTED = [text for kind, text in BLOCKS if kind == "text"]
+PLANS = [text for kind, text in BLOCKS if kind == "json"]
+SCENARIOS = [text for kind, text in BLOCKS if kind == "toml"]
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A folder with the files that README's reader would have."""
-    outline = [[0, 0], [12, 0], [12, 8], [0, 8], [0, 0]]
-    hole = [[4, 0.5], [4, 3], [4.2, 3], [4.2, 0.5], [4, 0.5]]
-    plan = {"type": "Polygon", "coordinates": [outline, hole]}
-    (tmp_path / "my_building.geojson").write_text(json.dumps(plan))
+    (tmp_path / "my_building.geojson").write_text(PLANS[0])
+    (tmp_path / "search.toml").write_text(SCENARIOS[0])
     image = np.zeros((120, 200), np.uint8)
     image[10:110, 10:190] = 254
     image[10:60, 90:94] = 0
@@ -36,7 +36,10 @@ def folder(tmp_path: Path) -> Path:
 
 
 def run(arguments: list[str], folder: Path) -> str:
-    done = subprocess.run([sys.executable, *arguments], cwd=folder, capture_output=True, text=True, check=False)
+    path = os.environ | {"PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+    done = subprocess.run(
+        [sys.executable, *arguments], cwd=folder, capture_output=True, text=True, check=False, env=path
+    )
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -52,7 +55,7 @@ def test_command(command: str, folder: Path) -> None:
 
 
 def test_there_is_something_to_try() -> None:
-    assert (len(COMMANDS), len(PROGRAMS), len(PRINTED)) == (4, 1, 1)
+    assert [len(blocks) for blocks in (COMMANDS, PROGRAMS, PRINTED, PLANS, SCENARIOS)] == [6, 1, 1, 1, 1]
 
 
 @pytest.mark.parametrize("program", PROGRAMS)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import time
-from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
 from geomsim.cli.console import say, say_json
-from geomsim.cli.flags import JsonFlag, OutFlag
+from geomsim.cli.flags import JsonFlag, OutFlag, PlanFlags
 
 __all__ = ["discretize"]
 
@@ -17,38 +16,38 @@ __all__ = ["discretize"]
 def discretize(
     plan: str,
     *,
-    method: Annotated[str, Parameter(help="How to cut.")] = "exact",
+    method: Annotated[str, Parameter(help="How to cut: exact.")] = "exact",
     radius: Annotated[float, Parameter(help="Radius of the robot that must fit through a portal, metres.")] = 0.2,
     picture: Annotated[bool, Parameter(help="Draw the picture.")] = True,
     out: OutFlag = None,
     json: JsonFlag = False,
+    flags: PlanFlags = PlanFlags(),  # noqa: B008 a frozen value without fields set
 ) -> int:
     """Cut a floor plan into cells; write them as GeoJSON and as a picture, and report on them.
 
     Parameters
     ----------
     plan
-        A bundled plan (`geomsim maps` lists them) or a file: GeoJSON, or the YAML of a ROS map.
+        A bundled plan or a file, a GeoJSON or a ROS map for instance; `geomsim maps` lists what there is.
     """
     from json import dumps
 
     from discretize import check_cells, convex_cells, write_cells
-    from geomsim.files import output_folder, replacing, write_text
-    from maps import read_plan
+    from geomsim.files import default_folder, replacing, results_folder, write_text
 
     begun = time.perf_counter()
-    place = read_plan(plan)
+    place = flags.read(plan)
     cells = convex_cells(place, method=method, radius=radius)
     seconds = time.perf_counter() - begun
     report = check_cells(cells)
-    folder = output_folder(out or Path("geomsim-output") / f"{place.name}-cells")
-    files = {"cells": folder / "cells.geojson", "report": folder / "report.json"}
-    with replacing(files["cells"]) as part:
-        write_cells(cells, part)
-    if picture:
-        from geomsim.drawing import write_cells_picture
+    with results_folder(out or default_folder(place.name, "cells")) as folder:
+        files = {"cells": folder / "cells.geojson", "report": folder / "report.json"}
+        with replacing(files["cells"]) as part:
+            write_cells(cells, part)
+        if picture:
+            from geomsim.drawing import write_cells_picture
 
-        files["picture"] = write_cells_picture(cells, folder / "cells.png")
+            files["picture"] = write_cells_picture(cells, folder / "cells.png")
     result = {
         "plan": place.name,
         "method": cells.method,

@@ -2,93 +2,156 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any
 
-from cyclopts import Parameter
+from cyclopts import Parameter, Token
 
-from maps import GeomsimError
+from maps import FloorPlan, GeomsimError
 
-__all__ = ["JsonFlag", "OutFlag", "ScenarioFlags"]
+__all__ = ["JsonFlag", "OutFlag", "PlanFlags", "ScenarioFlags"]
+
+
+def _whole(kind: type, tokens: Sequence[Token]) -> int:  # noqa: ARG001 the signature that cyclopts calls
+    """Read a whole number; of 1.5, cyclopts itself would drop the half in silence."""
+    try:
+        return int(tokens[0].value)
+    except ValueError:
+        raise ValueError(f"{tokens[0].value!r} is no whole number.") from None
+
+
+WholeNumber = Annotated[int | None, Parameter(converter=_whole)]
 
 JsonFlag = Annotated[bool, Parameter(name="--json", negative="", help="Print one JSON object and nothing else.")]
-OutFlag = Annotated[Path | None, Parameter(name="--out", help="Folder for the files written.")]
+OutFlag = Annotated[
+    Path | None,
+    Parameter(
+        name="--out",
+        help="Folder for the files written; without it a folder in geomsim-output (render: the record's own).",
+    ),
+]
 
 
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
-class ScenarioFlags:
-    """The keys of a scenario file; a flag overrides the file.
+class PlanFlags:
+    """What a floor plan's file may leave open.
+
+    Attributes
+    ----------
+    resolution
+        Size of a pixel, grid cell or drawing unit in metres, for a plan that does not say it.
+    level
+        Storey, of a plan that has several. [default: the largest]
+    units
+        Unit of the coordinates, like mm or ft, for a plan that does not say it.
+    structure
+        Take the furniture out of a scanned map and keep its walls. [default: if it is plainly a scan]
+    """
+
+    resolution: float | None = None
+    level: str | None = None
+    units: str | None = None
+    structure: bool | None = None
+
+    def read(self, plan: str) -> FloorPlan:
+        """Read a floor plan with what was given."""
+        from maps import read_plan
+
+        return read_plan(plan, resolution=self.resolution, level=self.level, units=self.units, structure=self.structure)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class ScenarioFlags(PlanFlags):
+    """The keys of a scenario file; a flag overrides the file. Defaults are those of :class:`geomsim.scenario.Scenario`.
 
     Attributes
     ----------
     seed
-        The same seed gives the same episode, bit for bit.
+        The same seed gives the same episode, bit for bit. [default: 0]
     pursuers
-        Number of robots.
+        Number of robots. [default: 2]
     start
-        Numbers of the cells in which they start, as in the picture: one for all, or one each, like 43,44.
+        Numbers of the cells in which they start, as in the picture: one for all, or one each, like
+        43,44. [default: the plan's own]
     planner
-        How they coordinate; `geomsim planners` lists them.
+        How they coordinate; `geomsim planners` lists them. [default: decoupled]
     cost
         Heuristic that the planner minimises: entropy, target-probability, probability, distance-over-probability.
+        [default: entropy]
     depth
-        Cells that the planner looks ahead.
+        Cells that the planner looks ahead. [default: 5]
+    option
+        Another parameter of the planner, as NAME=VALUE; may be given several times.
     capture
-        What counts as capture: sight or cell.
+        What counts as capture: sight, a free line of sight to the evader, or cell, being in its cell. [default:
+        sight]
     range
-        How far a robot sees, metres.
+        How far a robot sees, metres. [default: without limit]
     fov_degrees
-        Field of view of a robot, degrees.
+        Field of view of a robot, degrees. [default: 360]
+    detection
+        Probability that a robot notices, within a second, an evader that stays in view. [default: 1]
     speed
-        Speed of the robots, metres a second.
+        Speed of the robots, metres a second. [default: 1]
     radius
-        Radius of the robots, metres.
+        Radius of the robots, metres. [default: 0.2]
     evader
-        How the evader moves: centroid-boundary or still.
+        How the evader moves: centroid-boundary, still, shortest-paths, hiding or fleeing. [default:
+        centroid-boundary]
     evader_start
-        Number of the cell in which it starts.
+        Number of the cell in which it starts. [default: a random one]
     evader_speed
-        Its speed, metres a second.
+        Its speed, metres a second. [default: 1]
     evader_radius
-        Its radius, metres.
+        Its radius, metres. [default: 0.2]
     motion
-        How the robots believe it moves: area-speed-degree, uniform or stationary.
+        How the robots believe it moves: area-speed-degree, uniform or stationary. [default: area-speed-degree]
+    motion_speed
+        How fast they believe it to be, metres a second. [default: as fast as it is]
     method
-        How the plan is cut into cells.
+        How the plan is cut into cells. [default: exact]
+    clearance
+        Radius of the body for which portals and routes are made, metres. [default: the largest radius]
     time_limit
-        When to give up, seconds.
+        When to give up, seconds. [default: 1800]
     belief_step
-        Time between two belief steps, seconds.
+        Time between two belief steps, seconds. [default: 1]
     physics_step
-        Time between two physics steps, seconds.
+        Time between two physics steps, seconds. [default: 0.1]
     """
 
-    seed: int | None = None
-    pursuers: int | None = None
+    seed: WholeNumber = None
+    pursuers: WholeNumber = None
     start: str | None = None
     planner: str | None = None
     cost: str | None = None
-    depth: int | None = None
+    depth: WholeNumber = None
+    option: tuple[str, ...] = ()
     capture: str | None = None
     range: float | None = None
     fov_degrees: float | None = None
+    detection: float | None = None
     speed: float | None = None
     radius: float | None = None
     evader: str | None = None
-    evader_start: int | None = None
+    evader_start: WholeNumber = None
     evader_speed: float | None = None
     evader_radius: float | None = None
     motion: str | None = None
+    motion_speed: float | None = None
     method: str | None = None
+    clearance: float | None = None
     time_limit: float | None = None
     belief_step: float | None = None
     physics_step: float | None = None
 
     def given(self) -> dict[str, Any]:
         """Return the keys that were given, with their values as a scenario has them."""
-        told = {f.name: getattr(self, f.name) for f in fields(self)}
+        told = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "option"}
         if self.start is not None:
             try:
                 told["start"] = tuple(int(part) for part in self.start.split(","))
@@ -96,4 +159,20 @@ class ScenarioFlags:
                 raise GeomsimError(
                     f"--start takes cell numbers with commas between them, not {self.start!r}."
                 ) from None
+        if self.option:
+            told["options"] = dict(_option(text) for text in self.option)
         return {key: value for key, value in told.items() if value is not None}
+
+
+def _option(text: str) -> tuple[str, bool | int | float | str]:
+    """Read NAME=VALUE, the value as TOML would where it can."""
+    import tomllib
+
+    name, equals, value = text.partition("=")
+    if not (name.isidentifier() and equals and value):
+        raise GeomsimError(f"--option takes NAME=VALUE, not {text!r}.")
+    try:
+        read = tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return name, value
+    return name, read if isinstance(read, bool | int | float) else value

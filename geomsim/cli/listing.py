@@ -9,16 +9,25 @@ __all__ = ["maps", "planners"]
 
 
 def maps(*, json: JsonFlag = False) -> int:
-    """List the bundled floor plans."""
-    from maps import bundled_names, read_plan
+    """List the bundled floor plans, and the kinds of files that can be read."""
+    from maps import FORMATS, bundled_names, read_plan
 
     plans = [read_plan(name) for name in bundled_names()]
     if json:
-        say_json({"maps": [{"name": p.name, "area": p.area, "bounds": p.bounds} for p in plans]})
+        say_json(
+            {
+                "maps": [{"name": p.name, "area": p.area, "bounds": p.bounds} for p in plans],
+                "formats": [{"name": f.name, "suffixes": f.suffixes, "options": f.options} for f in FORMATS],
+            }
+        )
         return 0
     for p in plans:
         x0, y0, x1, y1 = p.bounds
         say(f"{p.name:<10} {x1 - x0:.0f} m x {y1 - y0:.0f} m, {p.area:.0f} m2 of free space")
+    say("")
+    for f in FORMATS:
+        options = f" (--{' --'.join(f.options)})" if f.options else ""
+        say(f"{f.name}: {' '.join(f.suffixes)}{options}")
     return 0
 
 

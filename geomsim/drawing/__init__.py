@@ -2,6 +2,7 @@
 
 from geomsim.drawing.cellpicture import draw_cells, write_cells_picture
 from geomsim.drawing.frame import FrameDrawer, FrameStyle, draw_frame
+from geomsim.drawing.picture import Picture, show_belief
 from geomsim.drawing.playback import write_frames
 from geomsim.drawing.theme import THEMES, DrawingError, Theme
 
@@ -10,9 +11,11 @@ __all__ = [
     "DrawingError",
     "FrameDrawer",
     "FrameStyle",
+    "Picture",
     "Theme",
     "draw_cells",
     "draw_frame",
+    "show_belief",
     "write_cells_picture",
     "write_frames",
 ]

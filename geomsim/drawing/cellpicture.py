@@ -13,9 +13,12 @@ from geomsim.drawing.colours import mixed, ramp
 from geomsim.drawing.floor import Floor
 from geomsim.drawing.legend import draw_scale_bar
 from geomsim.drawing.playback import write_png
-from geomsim.drawing.strokes import Image, blank, disc, line, tint
-from geomsim.drawing.text import draw_text, text_width
+from geomsim.drawing.raster import Image, Raster, blank
+from geomsim.drawing.surface import Surface
+from geomsim.drawing.text import cut_text, text_width
 from geomsim.drawing.theme import Theme, find_theme
+from geomsim.drawing.vector import VectorSheet, is_vector
+from geomsim.drawing.vectorfloor import VectorFloor
 from geomsim.drawing.viewport import Box, Viewport
 from maps import FloorPlan
 
@@ -25,8 +28,22 @@ _HUES = (20.0, 75.0, 125.0, 190.0, 250.0, 315.0)
 
 
 def write_cells_picture(cells: CellMap, path: Path, *, width: int | None = None, theme: str = "light") -> Path:
-    """Write the picture of :func:`draw_cells` as PNG; GeomsimError if it cannot be written."""
-    return write_png(draw_cells(cells, width=width, theme=theme), path)
+    """Write the picture of :func:`draw_cells` as ``.png``, ``.svg`` or ``.pdf``.
+
+    Raises
+    ------
+    GeomsimError
+        If it cannot be written.
+    """
+    if not is_vector(path):
+        return write_png(draw_cells(cells, width=width, theme=theme), path)
+    colours = find_theme(theme)
+    wide, high, unit, box = _layout(cells, width)
+    sheet = VectorSheet(wide, high, colours.page)
+    floor = VectorFloor(cells, box, colours, unit)
+    floor.paint(sheet, _soft_colours(cells, colours))
+    _draw_over(sheet, cells, floor.view, colours, unit, floor.unit, wide)
+    return sheet.save(path)
 
 
 def draw_cells(cells: CellMap, *, width: int | None = None, theme: str = "light") -> Image:
@@ -47,6 +64,16 @@ def draw_cells(cells: CellMap, *, width: int | None = None, theme: str = "light"
         Blue first.
     """
     colours = find_theme(theme)
+    wide, high, unit, box = _layout(cells, width)
+    surface = Raster(blank(wide, high, colours.page))
+    floor = Floor(cells, box, colours, unit)
+    floor.paint(surface, _soft_colours(cells, colours))
+    _draw_over(surface, cells, floor.view, colours, unit, floor.unit, wide)
+    return surface.image
+
+
+def _layout(cells: CellMap, width: int | None) -> tuple[int, int, float, Box]:
+    """Return width and height of the picture, the pixels that a thin line takes, and the box of the plan."""
     if width is None:
         width = round(float(np.clip(1600 * np.sqrt(len(cells) / 300), 1600, 3200)))
     unit = 1.25 * float(np.sqrt(width / 1600))
@@ -54,14 +81,17 @@ def draw_cells(cells: CellMap, *, width: int | None = None, theme: str = "light"
     margin, header = round(16 * unit), round(46 * unit)
     tall = float(np.clip((y1 - y0) / (x1 - x0), 0.3, 1.2))
     box = Box(margin, header, width - margin, header + round((width - 2 * margin) * tall))
-    image = blank(width, box.bottom + margin, colours.page)
-    floor = Floor(cells, box, colours, unit)
-    floor.paint(image, _soft_colours(cells, colours))
-    _draw_routes(image, cells, floor.view, colours, floor.unit)
-    _draw_repairs(image, cells.plan, floor.view, colours, floor.unit)
-    _draw_numbers(image, cells, floor.view, colours, unit)
-    _draw_header(image, cells, floor.view, colours, unit)
-    return image
+    return width, box.bottom + margin, unit, box
+
+
+def _draw_over(
+    surface: Surface, cells: CellMap, view: Viewport, theme: Theme, unit: float, fine: float, width: int
+) -> None:
+    """Draw what lies above the floor; ``fine`` is the unit of lines among cells."""
+    _draw_routes(surface, cells, view, theme, fine)
+    _draw_repairs(surface, cells.plan, view, theme, fine)
+    _draw_numbers(surface, cells, view, theme, unit)
+    _draw_header(surface, cells, view, theme, unit, width)
 
 
 def _soft_colours(cells: CellMap, theme: Theme) -> NDArray[np.uint8]:
@@ -84,16 +114,16 @@ def _soft_colours(cells: CellMap, theme: Theme) -> NDArray[np.uint8]:
     return picked
 
 
-def _draw_routes(image: Image, cells: CellMap, view: Viewport, theme: Theme, unit: float) -> None:
+def _draw_routes(surface: Surface, cells: CellMap, view: Viewport, theme: Theme, unit: float) -> None:
     colour = mixed(theme.muted, theme.page, 0.15)
     for portal in cells.portals:
         for leg in portal.legs:
-            line(image, view.pixels(leg), colour, max(1, round(1.2 * unit)))
+            surface.line(view.pixels(leg), colour, 1.2 * unit)
     for portal in cells.portals:
-        line(image, view.pixels(portal.segment), theme.curve, max(1, round(2.2 * unit)))
+        surface.line(view.pixels(portal.segment), theme.curve, 2.2 * unit)
 
 
-def _draw_numbers(image: Image, cells: CellMap, view: Viewport, theme: Theme, unit: float) -> None:
+def _draw_numbers(surface: Surface, cells: CellMap, view: Viewport, theme: Theme, unit: float) -> None:
     """Put each number on its checkpoint, as large as the cell has room for, else a dot."""
     for k, (cell, checkpoint) in enumerate(zip(cells.cells, cells.checkpoints, strict=True)):
         if not np.isfinite(checkpoint[0]):
@@ -104,40 +134,40 @@ def _draw_numbers(image: Image, cells: CellMap, view: Viewport, theme: Theme, un
         for size in (15 * unit, 12 * unit, 10 * unit):
             radius = max(0.5 * text_width(text, size, True), 0.42 * size) + 2.5 * unit
             if radius <= room:
-                disc(image, centre, radius + unit, theme.muted)
-                disc(image, centre, radius, theme.page)
-                draw_text(image, text, (centre[0] + 0.5, centre[1]), size, theme.text, "centre", bold=True)
+                surface.disc(centre, radius + unit, theme.muted)
+                surface.disc(centre, radius, theme.page)
+                surface.text(text, (centre[0] + 0.5, centre[1]), size, theme.text, "centre", bold=True)
                 break
         else:
-            disc(image, centre, min(2.2 * unit, max(room, 1.2 * unit)), theme.text)
+            surface.disc(centre, min(2.2 * unit, max(room, 1.2 * unit)), theme.text)
 
 
-def _draw_repairs(image: Image, plan: FloorPlan, view: Viewport, theme: Theme, unit: float) -> None:
-    thick = max(1, round(1.6 * unit))
+def _draw_repairs(surface: Surface, plan: FloorPlan, view: Viewport, theme: Theme, unit: float) -> None:
+    thick = 1.6 * unit
     for repair in plan.repairs:
         for part in shapely.get_parts(repair.geometry):
             pixels = view.pixels(shapely.get_coordinates(part))
             if isinstance(part, shapely.Polygon):
                 outline = view.pixels(shapely.get_coordinates(part.exterior))
-                tint(image, outline, theme.repair, 0.35)
-                line(image, outline, theme.repair, thick, closed=True)
+                surface.tint(outline, theme.repair, 0.35)
+                surface.line(outline, theme.repair, thick, closed=True)
             elif isinstance(part, shapely.Point):
-                disc(image, pixels[0], 3 * unit, theme.repair)
+                surface.disc(pixels[0], 3 * unit, theme.repair)
             else:
-                line(image, pixels, theme.repair, thick)
+                surface.line(pixels, theme.repair, thick)
 
 
-def _draw_header(image: Image, cells: CellMap, view: Viewport, theme: Theme, unit: float) -> None:
+def _draw_header(surface: Surface, cells: CellMap, view: Viewport, theme: Theme, unit: float, width: int) -> None:
     at = (16 * unit, 23 * unit)
-    name = cells.plan.name
-    draw_text(image, name, at, 20 * unit, theme.text, bold=True)
+    name = cut_text(cells.plan.name, 0.3 * width, 20 * unit, bold=True)
+    surface.text(name, at, 20 * unit, theme.text, bold=True)
     x = at[0] + text_width(name, 20 * unit, True) + 14 * unit
     told = f"{len(cells)} cells · {len(cells.portals)} portals · {cells.plan.area:.0f} m² · {cells.method}"
-    draw_text(image, told, (x, at[1] + unit), 14 * unit, theme.muted)
+    surface.text(told, (x, at[1] + unit), 14 * unit, theme.muted)
     if cells.plan.repairs:
         x += text_width(told, 14 * unit) + 14 * unit
         count = len(cells.plan.repairs)
-        draw_text(image, f"{count} repair{'s' * (count != 1)} in red", (x, at[1] + unit), 14 * unit, theme.repair)
-    right = image.shape[1] - round(16 * unit)
+        surface.text(f"{count} repair{'s' * (count != 1)} in red", (x, at[1] + unit), 14 * unit, theme.repair)
+    right = width - round(16 * unit)
     place = Box(right - round(300 * unit), 0, right - round(50 * unit), round(31 * unit))
-    draw_scale_bar(image, place, view.scale, theme, unit)
+    draw_scale_bar(surface, place, view.scale, theme, unit)

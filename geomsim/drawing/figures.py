@@ -4,8 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomsim.drawing.colours import mixed
-from geomsim.drawing.strokes import Image, dashes, disc, line, polygon, tint
-from geomsim.drawing.text import draw_text
+from geomsim.drawing.surface import Surface
 from geomsim.drawing.theme import Theme
 from geomsim.drawing.viewport import Viewport
 
@@ -25,76 +24,79 @@ class Figures:
         Colours.
     unit : float
         Pixels that a thin line takes.
+    team : int
+        How many robots there are; ways that they share are drawn side by side.
     """
 
-    def __init__(self, view: Viewport, theme: Theme, unit: float) -> None:
+    def __init__(self, view: Viewport, theme: Theme, unit: float, team: int = 1) -> None:
         self._view = view
         self._theme = theme
         self._unit = unit
-        self._thin = max(1, round(1.2 * unit))
+        self._team = team
 
-    def sight(self, image: Image, number: int, area: Array) -> None:
+    def sight(self, surface: Surface, number: int, area: Array) -> None:
         """Draw the area that a robot sees, shape (k, 2), metres: lit from there."""
         pixels = self._view.pixels(area)
         colour = self._theme.robot(number)
-        tint(image, pixels, mixed(colour, self._theme.light, 0.5), 0.38)
+        surface.tint(pixels, mixed(colour, self._theme.light, 0.5), 0.38)
 
-    def trail(self, image: Image, number: int, path: Array) -> None:
+    def trail(self, surface: Surface, number: int, path: Array) -> None:
         """Draw where a robot has come from, thinner the longer ago."""
         pixels = self._view.pixels(path)
         pieces = np.array_split(np.arange(len(pixels) - 1), 4)
         for width, piece in zip((1.0, 1.5, 2.0, 2.5), pieces, strict=True):
             if len(piece):
                 part = pixels[piece[0] : piece[-1] + 2]
-                line(image, part, self._theme.robot(number), max(1, round(width * self._unit)))
+                surface.line(part, self._theme.robot(number), width * self._unit)
 
-    def route(self, image: Image, number: int, path: Array) -> None:
+    def route(self, surface: Surface, number: int, path: Array) -> None:
         """Draw where a robot intends to go, dashed, with a ring at the end."""
         if len(path) < 2:
             return
-        pixels = self._view.pixels(path)
+        aside = (number - (self._team - 1) / 2) * min(3.0, 9.0 / max(self._team - 1, 1)) * self._unit
+        pixels = self._view.pixels(path) + aside  # to the right and down, which tells both kinds of hallway apart
         colour = self._theme.robot(number)
         left = float(np.hypot(*np.diff(pixels, axis=0).T).sum())
         dash, gap = 7.0 * self._unit, 5.0 * self._unit
         # Counted from the far end, dashes stand still while the robot moves.
-        dashes(image, pixels, colour, max(1, round(1.6 * self._unit)), dash=dash, gap=gap, shift=-left)
-        disc(image, pixels[-1], 4.5 * self._unit, colour)
-        disc(image, pixels[-1], 2.6 * self._unit, self._theme.casing)
+        surface.dashes(pixels, colour, 1.6 * self._unit, dash=dash, gap=gap, shift=-left)
+        surface.disc(pixels[-1], 4.5 * self._unit, colour)
+        surface.disc(pixels[-1], 2.6 * self._unit, self._theme.casing)
 
-    def robot(self, image: Image, number: int, position: Array, heading: float, prefix: str = "") -> None:
+    def robot(self, surface: Surface, number: int, position: Array, heading: float, prefix: str = "") -> None:
         """Draw a robot with its number, from 1, and a beak where it is heading."""
         centre = self._view.pixels(position)
         radius = 9.5 * self._unit
         for grown, colour in ((1.8 * self._unit, self._theme.casing), (0.0, self._theme.robot(number))):
-            polygon(image, [_beak(centre, radius + grown, heading, grown)], colour)
-            disc(image, centre, radius + grown, colour)
-        self._label(image, f"{prefix}{number + 1}", centre, 13.0)
+            surface.polygon([_beak(centre, radius + grown, heading, grown)], colour)
+            surface.disc(centre, radius + grown, colour)
+        self._label(surface, f"{prefix}{number + 1}", centre, 13.0)
 
-    def spotting(self, image: Image, pursuer: Array, evader: Array) -> None:
+    def spotting(self, surface: Surface, pursuer: Array, evader: Array) -> None:
         """Draw the line of sight that ended the pursuit."""
         ends = np.stack([self._view.pixels(pursuer), self._view.pixels(evader)])
-        line(image, ends, self._theme.evader, max(1, round(2.0 * self._unit)))
+        surface.line(ends, self._theme.evader, 2.0 * self._unit)
 
-    def evader(self, image: Image, position: Array, *, captured: bool) -> None:
+    def evader(self, surface: Surface, position: Array, *, captured: bool) -> None:
         """Draw the evader, a diamond with an E; a ring around it once it is captured."""
         centre = self._view.pixels(position)
         radius = 12.0 * self._unit
         if captured:
-            _ring(image, centre, radius + 6.0 * self._unit, self._theme.evader, round(2.2 * self._unit))
+            _ring(surface, centre, radius + 6.0 * self._unit, self._theme.evader, 2.2 * self._unit)
         for grown, colour in ((2.4 * self._unit, self._theme.casing), (0.0, self._theme.evader)):
             reach = radius + grown
-            polygon(image, [centre + reach * np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])], colour)
-        self._label(image, "E", centre, 12.0)
+            surface.polygon([centre + reach * np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])], colour)
+        self._label(surface, "E", centre, 12.0)
 
-    def _label(self, image: Image, text: str, centre: Array, size: float) -> None:
+    def _label(self, surface: Surface, text: str, centre: Array, size: float) -> None:
         size *= self._unit * min(1.0, 2.1 / (len(text) + 0.6))
         at = (float(centre[0]) + 0.5, float(centre[1]))
-        draw_text(image, text, at, size, self._theme.label, "centre", bold=True)
+        surface.text(text, at, size, self._theme.label, "centre", bold=True)
 
 
-def _ring(image: Image, centre: Array, radius: float, colour: str, width: int) -> None:
+def _ring(surface: Surface, centre: Array, radius: float, colour: str, width: float) -> None:
     turn = np.linspace(0.0, 2 * np.pi, 49)[:-1]
-    line(image, centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1), colour, max(1, width), closed=True)
+    surface.line(centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1), colour, width, closed=True)
 
 
 def _beak(centre: Array, radius: float, heading: float, grown: float) -> Array:

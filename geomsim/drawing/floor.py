@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from discretize import CellMap
 from geomsim.drawing.colours import bgr
-from geomsim.drawing.strokes import SHIFT, Image, fixed
+from geomsim.drawing.raster import SHIFT, Image, Raster, fixed, spread
 from geomsim.drawing.theme import Theme
 from geomsim.drawing.viewport import Box, Viewport
 from maps import FloorPlan
 
-__all__ = ["Floor", "inner_boundaries", "label_image", "thin_walls"]
+__all__ = ["Floor", "floor_view", "inner_boundaries", "label_image", "thin_walls"]
 
 # Static parts are drawn this many times larger and averaged, which is anti-aliasing at its best.
 _ZOOM = 4
@@ -38,8 +38,8 @@ class Floor:
         Colours.
     unit : float
         Pixels that a thin line takes.
-    boundaries, portals : bool
-        Whether to dot the cell boundaries and mark the places to cross them.
+    portals : bool
+        Whether to mark the places to cross cell boundaries.
 
     Attributes
     ----------
@@ -58,34 +58,29 @@ class Floor:
         theme: Theme,
         unit: float,
         *,
-        boundaries: bool = True,
         portals: bool = True,
     ) -> None:
         self.box = box
         self._theme = theme
-        pad = int(np.ceil(2.5 * unit))  # the outer half of a wall's stroke needs room
-        self.view = Viewport.fit(cells.plan.bounds, box.inset(pad, pad, pad, pad))
-        cell = self.view.scale * float(np.sqrt(cells.plan.area / max(len(cells), 1)))
-        self.unit = unit = unit * float(np.clip(cell / (60.0 * unit), 0.4, 1.0))
+        self.view, self.unit = floor_view(cells, box, unit)
+        unit = self.unit
         local = Viewport(self.view.scale, (self.view.origin[0] - box.left, self.view.origin[1] - box.top))
         shape = (box.height, box.width)
         self.labels = label_image(cells, local, shape)
 
         wall = _wall_cover(cells.plan, local, shape, 2.5 * unit, 1.5 * unit)
         self._is_wall = (wall > 0.5).astype(np.uint8)
-        layers = [(wall, theme.wall)]
-        if boundaries:
-            layers.insert(0, (_dot_cover(cells, local, shape, unit), theme.dots))
+        layers = [(_dot_cover(cells, local, shape, unit), theme.dots), (wall, theme.wall)]
         if portals:
             layers.insert(0, (_portal_cover(cells, local, shape, unit), theme.portal))
         self._where, self._keep, self._add = _flatten(layers)
 
-    def paint(self, image: Image, colours: NDArray[np.uint8]) -> None:
-        """Draw the floor into its box of the image.
+    def paint(self, surface: Raster, colours: NDArray[np.uint8]) -> None:
+        """Draw the floor into its box of an image.
 
         Parameters
         ----------
-        image : ndarray of uint8, shape (height, width, 3)
+        surface : Raster
             Drawn on.
         colours : ndarray of uint8, shape (N, 3)
             Red, green and blue of each cell.
@@ -97,11 +92,19 @@ class Floor:
         part = cv2.cvtColor(pixels.reshape(*self.labels.shape, 4), cv2.COLOR_BGRA2BGR)
         flat = part.reshape(-1, 3)
         flat[self._where] = flat[self._where] * self._keep + self._add + 0.5
-        image[self.box.slices] = part
+        surface.image[self.box.slices] = part
 
     def restore_walls(self, image: Image, painted: Image) -> None:
         """Copy the walls from a painted image to one on which something was drawn over them."""
         cv2.copyTo(painted[self.box.slices], self._is_wall, image[self.box.slices])
+
+
+def floor_view(cells: CellMap, box: Box, unit: float) -> tuple[Viewport, float]:
+    """Return how a cell map fits a box, and the pixels that a thin line of it takes: less where cells are small."""
+    pad = int(np.ceil(2.5 * unit))  # the outer half of a wall's stroke needs room
+    view = Viewport.fit(cells.plan.bounds, box.inset(pad, pad, pad, pad))
+    cell = view.scale * float(np.sqrt(cells.plan.area / max(len(cells), 1)))
+    return view, unit * float(np.clip(cell / (60.0 * unit), 0.4, 1.0))
 
 
 def label_image(cells: CellMap, view: Viewport, shape: tuple[int, int]) -> NDArray[np.intp]:
@@ -160,7 +163,7 @@ def _wall_cover(
 
 def _dot_cover(cells: CellMap, view: Viewport, shape: tuple[int, int], unit: float) -> NDArray[np.float32]:
     zoomed = view.zoomed(_ZOOM)
-    centres = [_spread(zoomed.pixels(path), 5.0 * unit * _ZOOM) for path in inner_boundaries(cells)]
+    centres = [spread(zoomed.pixels(path), 5.0 * unit * _ZOOM) for path in inner_boundaries(cells)]
     return _discs(shape, centres, 0.95 * unit * _ZOOM)
 
 
@@ -176,14 +179,6 @@ def _discs(shape: tuple[int, int], centres: Iterable[NDArray[np.float64]], radiu
                 cv2.circle(mask, (int(x), int(y)), round(radius * (1 << SHIFT)), (255,), -1, cv2.LINE_8, SHIFT)
 
     return _cover(shape, draw)
-
-
-def _spread(path: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
-    """Return points along a polyline, evenly, with half a space at each end."""
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
-    count = max(1, round(along[-1] / spacing))
-    places = (np.arange(count) + 0.5) * along[-1] / count
-    return np.stack([np.interp(places, along, path[:, 0]), np.interp(places, along, path[:, 1])], axis=1)
 
 
 def _flatten(

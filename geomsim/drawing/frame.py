@@ -5,16 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+import shapely
+from numpy.typing import NDArray
 
+from geomsim.drawing.colours import lightness
 from geomsim.drawing.figures import Figures
 from geomsim.drawing.floor import Floor
 from geomsim.drawing.legend import draw_colour_bar, draw_scale_bar
 from geomsim.drawing.moment import Moment, Timeline, shares
+from geomsim.drawing.raster import Image, Raster, blank
 from geomsim.drawing.scale import ProbabilityScale
 from geomsim.drawing.sight import Sight
 from geomsim.drawing.strip import CaptureStrip
-from geomsim.drawing.strokes import Image, blank
-from geomsim.drawing.text import draw_text, text_width
+from geomsim.drawing.surface import Surface
+from geomsim.drawing.text import cut_text, text_width
 from geomsim.drawing.theme import DrawingError, find_theme
 from geomsim.drawing.viewport import Box, Viewport
 from geomsim.episode import Episode
@@ -38,6 +42,8 @@ class FrameStyle:
         "shown", or "hidden" until it is captured, as the robots know it.
     belief, sight, plans, trails : bool
         Layers: cells shaded by probability, what each robot sees, where it intends to go, where it came from.
+    numbers : bool
+        Layer: the number of each cell that has room for it.
     note : str
         Something to say beside the time, such as the speed of a video.
     """
@@ -49,6 +55,7 @@ class FrameStyle:
     sight: bool = True
     plans: bool = True
     trails: bool = True
+    numbers: bool = False
     note: str = ""
 
     def __post_init__(self) -> None:
@@ -99,7 +106,7 @@ class FrameDrawer:
 
         self._timeline = Timeline(episode)
         self._floor = Floor(episode.cells, plan_box, theme, unit)
-        self._figures = Figures(self._floor.view, theme, unit)
+        self._figures = Figures(self._floor.view, theme, unit, episode.pursuers.shape[1])
         self._strip = CaptureStrip(episode, strip_box, theme, unit)
         self._sight = Sight(episode)
         self._scale = ProbabilityScale.of(episode.beliefs)
@@ -119,68 +126,82 @@ class FrameDrawer:
         moment = self._timeline.at(time)
         painted = self._painted_floor(moment.step)
         image = painted.copy()
-        figures, style = self._figures, self.style
+        surface, figures, style = Raster(image), self._figures, self.style
         team = range(len(moment.pursuers))
         if style.sight:
             for r in team:
-                figures.sight(image, r, self._sight.area(moment, r))
+                figures.sight(surface, r, self._sight.area(moment, r))
             self._floor.restore_walls(image, painted)
         if style.trails:
             for r in team:
-                figures.trail(image, r, moment.trails[r])
+                figures.trail(surface, r, moment.trails[r])
         if style.plans and not moment.captured:
             for r in team:
-                figures.route(image, r, moment.routes[r])
+                figures.route(surface, r, moment.routes[r])
         by = self.episode.outcome.pursuer
         if moment.captured and by is not None:
-            figures.spotting(image, moment.pursuers[by], moment.evader)
+            figures.spotting(surface, moment.pursuers[by], moment.evader)
         if style.evader == "shown" or moment.captured:
-            figures.evader(image, moment.evader, captured=moment.captured)
+            figures.evader(surface, moment.evader, captured=moment.captured)
         for r in team:
-            figures.robot(image, r, moment.pursuers[r], float(moment.headings[r]))
-        self._strip.draw(image, moment)
-        self._draw_time(image, moment)
+            figures.robot(surface, r, moment.pursuers[r], float(moment.headings[r]))
+        self._strip.draw(surface, moment)
+        self._draw_time(surface, moment)
         return image
 
     def _painted_floor(self, step: int) -> Image:
         if self._canvas.step != step:
             image = self._background.copy()
             share = shares(self.episode.beliefs[step]) if self.style.belief else np.zeros(len(self.episode.cells))
-            self._floor.paint(image, self._theme.ramp[self._scale.steps(share)])
+            colours = self._theme.ramp[self._scale.steps(share)]
+            self._floor.paint(Raster(image), colours)
+            if self.style.numbers:
+                self._draw_numbers(Raster(image), colours)
             self._canvas = _Canvas(step, image)
         return self._canvas.image
+
+    def _draw_numbers(self, surface: Surface, colours: NDArray[np.uint8]) -> None:
+        theme, size = self._theme, 12 * self.style.unit
+        far = np.abs(lightness(colours) - lightness(theme.ramp[:1])) > 0.3  # from the lightness of the page
+        for k, (cell, at) in enumerate(zip(self.episode.cells.cells, self.episode.cells.checkpoints, strict=True)):
+            room = self.view.scale * float(shapely.distance(cell.exterior, shapely.Point(at)))
+            if room > 0.6 * text_width(str(k + 1), size):  # never where the checkpoint is not a number
+                x, y = self.view.pixels(at)
+                surface.text(str(k + 1), (float(x), float(y)), size, theme.page if far[k] else theme.text, "centre")
 
     def _draw_background(self, legend: Box) -> Image:
         theme, unit, episode = self._theme, self.style.unit, self.episode
         image = blank(*self.style.size, theme.page)
-        self._strip.draw_axes(image)
+        surface = Raster(image)
+        self._strip.draw_axes(surface)
         if self.style.belief:
             title = "chance that the evader is in a cell, if not captured"
-            draw_colour_bar(image, legend, self._scale, theme, unit, title)
-        draw_scale_bar(image, legend, self._floor.view.scale, theme, unit)
+            draw_colour_bar(surface, legend, self._scale, theme, unit, title)
+        draw_scale_bar(surface, legend, self._floor.view.scale, theme, unit)
         at = (16 * unit, 23 * unit)
-        draw_text(image, episode.plan.name, at, 20 * unit, theme.text, bold=True)
+        name = cut_text(episode.plan.name, 0.35 * self.style.size[0], 20 * unit, bold=True)
+        surface.text(name, at, 20 * unit, theme.text, bold=True)
         robots = episode.pursuers.shape[1]
         told = f"{robots} robot{'s' * (robots != 1)} · {len(episode.cells)} cells"
-        x = at[0] + text_width(episode.plan.name, 20 * unit, True) + 14 * unit
-        draw_text(image, told, (x, at[1] + unit), 14 * unit, theme.muted)
+        x = at[0] + text_width(name, 20 * unit, True) + 14 * unit
+        surface.text(told, (x, at[1] + unit), 14 * unit, theme.muted)
         return image
 
-    def _draw_time(self, image: Image, moment: Moment) -> None:
+    def _draw_time(self, surface: Surface, moment: Moment) -> None:
         theme, unit = self._theme, self.style.unit
         right, y = self.style.size[0] - 16 * unit, 23 * unit
         widest = text_width(f"{self.episode.times[-1]:.1f} s", 22 * unit, True)
-        draw_text(image, f"{moment.time:.1f} s", (right, y), 22 * unit, theme.text, "right", bold=True)
+        surface.text(f"{moment.time:.1f} s", (right, y), 22 * unit, theme.text, "right", bold=True)
         x = right - widest - 16 * unit
         if self.style.note:
-            draw_text(image, self.style.note, (x, y + unit), 14 * unit, theme.muted, "right")
+            surface.text(self.style.note, (x, y + unit), 14 * unit, theme.muted, "right")
             x -= text_width(self.style.note, 14 * unit) + 16 * unit
         out = self.episode.outcome
         if moment.captured and out.pursuer is not None and out.cell is not None:
             told = f"captured by robot {out.pursuer + 1} in cell {out.cell + 1}"
-            draw_text(image, told, (x, y), 16 * unit, theme.evader, "right", bold=True)
+            surface.text(told, (x, y), 16 * unit, theme.evader, "right", bold=True)
         elif not out.captured and moment.time >= out.time - 1e-9:
-            draw_text(image, out.status.value, (x, y), 16 * unit, theme.muted, "right", bold=True)
+            surface.text(out.status.value, (x, y), 16 * unit, theme.muted, "right", bold=True)
 
 
 def draw_frame(episode: Episode, time: float, style: FrameStyle | None = None) -> Image:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geomsim.drawing.strokes import Image
+from geomsim.drawing.raster import Image
 
 __all__ = ["Palette"]
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomsim.drawing.frame import FrameDrawer, FrameStyle
-from geomsim.drawing.strokes import Image
+from geomsim.drawing.raster import Image
 from geomsim.drawing.theme import DrawingError
 from geomsim.episode import Episode
 from geomsim.files import output_folder, replacing

@@ -1,6 +1,7 @@
 """Videos, frames and contact sheets as files: what is in them, and what is left when writing fails."""
 
 import dataclasses
+import re
 from pathlib import Path
 
 import av
@@ -189,6 +190,23 @@ def test_the_contact_sheet_has_a_panel_for_each_time(episode: Episode, tmp_path:
     assert cv2.connectedComponents(grown)[0] - 1 == 3
 
 
+@pytest.mark.parametrize("kind", ["svg", "pdf"])
+def test_the_contact_sheet_as_vectors(episode: Episode, tmp_path: Path, kind: str) -> None:
+    options = {"times": [0.0, 12.0], "width": 900}
+    path = write_snapshots(episode, tmp_path / f"s.{kind}", **options)
+    data = path.read_bytes()
+    assert data == write_snapshots(episode, tmp_path / f"t.{kind}", **options).read_bytes()
+    if kind == "pdf":
+        assert data.startswith(b"%PDF")
+        assert data.rstrip().endswith(b"%%EOF")
+        return
+    colours = re.findall(r"fill: (#[0-9a-f]{6})", data.decode())
+    theme = THEMES["light"]
+    assert colours.count(theme.evader) == 2
+    assert colours.count(theme.robot(0)) >= 2
+    assert "date" not in data.decode()
+
+
 @pytest.mark.parametrize("panels", [1, 2, 5, 6, 9])
 def test_snapshot_times_go_from_start_to_capture(episode: Episode, panels: int) -> None:
     times = snapshot_times(episode, None, panels)
@@ -213,3 +231,18 @@ def test_the_cells_picture_shows_cells_apart_and_repairs_in_red(cells: CellMap, 
     assert (changed[..., 2] > -60).all()  # red does not
     path = write_cells_picture(cells, tmp_path / "c.png", width=800)
     assert np.array_equal(cv2.imread(str(path)), plain)
+
+
+@pytest.mark.parametrize("kind", ["svg", "pdf"])
+def test_the_cells_picture_as_vectors(cells: CellMap, tmp_path: Path, kind: str) -> None:
+    first, second = (write_cells_picture(cells, tmp_path / f"{k}.{kind}").read_bytes() for k in (1, 2))
+    assert first == second
+    assert (b"<svg" if kind == "svg" else b"%PDF") in first
+
+
+@pytest.mark.parametrize("write", [write_cells_picture, write_snapshots], ids=["cells", "snapshots"])
+def test_a_kind_of_picture_that_is_none_is_a_sentence(
+    cells: CellMap, episode: Episode, tmp_path: Path, write: object
+) -> None:
+    with pytest.raises(GeomsimError, match=r"'a\.jpg'.*'\.png'"):
+        write(cells if write is write_cells_picture else episode, tmp_path / "a.jpg")

@@ -32,7 +32,9 @@ def check(plan: FloorPlan):
     assert np.abs(xy / GRID - np.round(xy / GRID)).max() < 1e-6 * max(1.0, np.abs(xy / GRID).max())
     assert all(part.area >= 0.5 - 1e-2 and not part.buffer(-0.24).is_empty for part in plan.parts)
     again = make_plan(plan.space, name=plan.name)
-    assert again.space.symmetric_difference(plan.space).area < 1e-3 * plan.space.length + 1e-9
+    # A part that only just counts may not count any more; but then it is listed.
+    listed = sum(repair.geometry.area for repair in again.repairs)
+    assert again.space.symmetric_difference(plan.space).area < listed + 1e-3 * plan.space.length + 1e-9
 
 
 def test_a_plain_room_stays_as_it_is():

@@ -89,16 +89,6 @@ def test_the_path_is_the_best_of_all_by_a_literal_algorithm_1(graphs, name, data
     np.testing.assert_allclose(by_path[decision.path], decision.cost, rtol=1e-9)
 
 
-def test_many_states_are_searched_by_sparse_products_with_the_same_result(monkeypatch, metric_house):
-    problem = SearchProblem(metric_house, AreaSpeedDegree(), SameCell(), (1.0, 1.0))
-    state = SearchState(0.0, uniform_belief(metric_house), (PursuerState(0), PursuerState(4)), ((), ()))
-    dense = Decoupled(depth=4).solve(problem, np.random.default_rng(0)).decide(state)
-    monkeypatch.setattr("planners.simulation.DENSE_STATES", 0)
-    sparse = Decoupled(depth=4).solve(problem, np.random.default_rng(0)).decide(state)
-    assert [d.path for d in sparse] == [d.path for d in dense]
-    np.testing.assert_allclose([d.cost for d in sparse], [d.cost for d in dense], rtol=1e-12)
-
-
 def star(leaves):
     return SearchGraph.from_edges(leaves + 1, [(0, k) for k in range(1, leaves + 1)])
 

@@ -1,0 +1,123 @@
+"""Exact predictions of a scenario in the cell model: a floor plan's, or an edge list's."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geomsim.scenario import Scenario, read_scenario
+from geomsim.team import place_team
+from maps import GeomsimError
+from planners import (
+    Prediction,
+    SameCell,
+    SearchGraph,
+    SearchProblem,
+    TooLargeError,
+    lower_bounds,
+    predict,
+    read_edge_list,
+    unit_problem,
+)
+
+__all__ = ["ScenarioPrediction", "predict_scenario"]
+
+
+@dataclass(frozen=True, slots=True)
+class ScenarioPrediction:
+    """What a team will achieve.
+
+    Attributes
+    ----------
+    name : str
+        Of the plan or graph.
+    predictions : tuple of Prediction
+        One for each start.
+    bounds : tuple of float or None
+        For each start what no team can beat; None where there are too many joint positions to tell.
+    first : int
+        The number that people give to the first cell: 1, or 0 in an edge list.
+    unit : str
+        Of the times: "s", or "steps" in an edge list.
+    scenario : dict
+        What it depends on.
+    """
+
+    name: str
+    predictions: tuple[Prediction, ...]
+    bounds: tuple[float, ...] | None
+    first: int
+    unit: str
+    scenario: dict[str, Any]
+
+
+def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: bool = False) -> ScenarioPrediction:
+    """Predict a scenario.
+
+    Parameters
+    ----------
+    path : Path or None
+        A scenario file.
+    keys : dict
+        Keys of a scenario that override the file's; ``plan`` may name an edge list.
+    everywhere : bool
+        Whether to let the whole team start in each cell in turn, instead of in its start cells.
+
+    Raises
+    ------
+    GeomsimError
+        If the scenario cannot be read or predicted.
+    """
+    scenario = read_scenario(path, keys)
+    if is_edge_list(scenario.plan):
+        graph = read_edge_list(scenario.plan)
+        if scenario.planner == "random":  # in unit time a wandering pursuer chooses as the evader does
+            scenario = scenario.model_copy(update={"options": {"wait": True} | scenario.options})
+        problem, first, name = unit_problem(graph, scenario.pursuers), 0, Path(scenario.plan).stem
+        starts = _common(graph, scenario.pursuers) if everywhere else [_vertices(scenario, graph)]
+    else:
+        plan, cells = scenario.place()
+        graph = SearchGraph.from_cells(cells)
+        speeds = (scenario.speed,) * scenario.pursuers
+        problem = SearchProblem(graph, scenario.belief_motion(), SameCell(), speeds, scenario.belief_step)
+        first, name = 1, plan.name
+        starts = _common(graph, scenario.pursuers) if everywhere else [place_team(cells, scenario.team())]
+    predictions = predict(problem, scenario.method_of_planning(), starts, np.random.default_rng(scenario.seed))
+    try:
+        bounds = lower_bounds(problem, starts)
+    except TooLargeError:
+        bounds = None
+    unit = "steps" if first == 0 else "s"
+    return ScenarioPrediction(name, predictions, bounds, first, unit, scenario.as_dict())
+
+
+def is_edge_list(plan: str) -> bool:
+    """Whether a plan is a JSON file that says it has vertices and edges."""
+    path = Path(plan)
+    if path.suffix != ".json" or not path.is_file():
+        return False
+    try:
+        told = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(told, dict) and "edges" in told
+
+
+def _common(graph: SearchGraph, pursuers: int) -> list[tuple[int, ...]]:
+    return [(int(cell),) * pursuers for cell in np.flatnonzero(graph.component == 0)]
+
+
+def _vertices(scenario: Scenario, graph: SearchGraph) -> tuple[int, ...]:
+    numbers = scenario.start or (0,)
+    if len(numbers) not in (1, scenario.pursuers):
+        raise GeomsimError(
+            f"{len(numbers)} start vertices are given for {scenario.pursuers} pursuers: give one, or one each."
+        )
+    for number in numbers:
+        if not 0 <= number < len(graph):
+            raise GeomsimError(f"There is no vertex {number}: those of {scenario.plan} go from 0 to {len(graph) - 1}.")
+    return tuple(numbers[k % len(numbers)] for k in range(scenario.pursuers))

@@ -1,0 +1,282 @@
+"""What is compiled: rays among walls, and the first look of a team at each of many evaders.
+
+Imported late: numba takes half a second to import, and the first run after an installation some seconds to compile.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from geomsim.trials.walls import WallGrid
+
+__all__ = ["Looked", "Lookers", "blocked_moves", "first_looks", "first_meetings", "seen_pairs"]
+
+
+def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    return cast(Callable[..., Any], numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+
+
+@_compiled
+def _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    """Whether no wall is between a and b: squares are visited in the order in which the ray goes through them.
+
+    A ray that touches the end of a wall is blocked; one that only ends on a wall, or runs along one, is not. These
+    are the rules of pymunk's segment queries.
+    """
+    dx, dy = bx - ax, by - ay
+    i = min(max(math.floor((ax - x0) / size), 0), columns - 1)
+    j = min(max(math.floor((ay - y0) / size), 0), rows - 1)
+    last_i = min(max(math.floor((bx - x0) / size), 0), columns - 1)
+    last_j = min(max(math.floor((by - y0) / size), 0), rows - 1)
+    step_i, step_j = (1 if dx > 0 else -1), (1 if dy > 0 else -1)
+    # share of the ray at which it leaves the square, and for one square's side
+    side_x, side_y = np.inf, np.inf
+    leave_x, leave_y = np.inf, np.inf
+    if dx != 0.0:
+        side_x = size / abs(dx)
+        leave_x = (x0 + (i + (1 if dx > 0 else 0)) * size - ax) / dx
+    if dy != 0.0:
+        side_y = size / abs(dy)
+        leave_y = (y0 + (j + (1 if dy > 0 else 0)) * size - ay) / dy
+    for _ in range(abs(last_i - i) + abs(last_j - j) + 1):
+        square = j * columns + i
+        for m in range(first[square], first[square + 1]):
+            w = members[m]
+            px, py, qx, qy = walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3]
+            p = dx * (py - ay) - dy * (px - ax)
+            q = dx * (qy - ay) - dy * (qx - ax)
+            if p * q <= 0.0:
+                ex, ey = qx - px, qy - py
+                a = ex * (ay - py) - ey * (ax - px)
+                b = ex * (by - py) - ey * (bx - px)
+                if a * b < 0.0:
+                    return False
+        if j == last_j or (i != last_i and leave_x < leave_y):
+            i += step_i
+            leave_x += side_x
+        else:
+            j += step_j
+            leave_y += side_y
+    return True
+
+
+@_compiled
+def _pairs(walls, first, members, x0, y0, size, columns, rows, a, b):  # type: ignore[no-untyped-def]
+    seen = np.empty(len(a), dtype=np.bool_)
+    for k in range(len(a)):
+        seen[k] = _free(walls, first, members, x0, y0, size, columns, rows, a[k, 0], a[k, 1], b[k, 0], b[k, 1])
+    return seen
+
+
+@_compiled
+def _blocked(walls, first, members, x0, y0, size, columns, rows, track):  # type: ignore[no-untyped-def]
+    count = 0
+    for t in range(len(track) - 1):
+        for k in range(track.shape[1]):
+            ax, ay, bx, by = track[t, k, 0], track[t, k, 1], track[t + 1, k, 0], track[t + 1, k, 1]
+            if (ax != bx or ay != by) and not _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):
+                count += 1
+    return count
+
+
+@_compiled
+def _looks(  # type: ignore[no-untyped-def]
+    walls,
+    first,
+    members,
+    x0,
+    y0,
+    size,
+    columns,
+    rows,
+    eyes,
+    headings,
+    reach,
+    half,
+    rates,
+    targets,
+    which,
+    patience,
+    looked,
+    when,
+    who,
+):
+    free = which.copy()
+    left = len(free)
+    for t in range(len(targets)):
+        kept = 0
+        for n in range(left):
+            k = free[n]
+            bx, by = float(targets[t, k, 0]), float(targets[t, k, 1])
+            caught = False
+            for i in range(eyes.shape[1]):
+                ax, ay = eyes[t, i, 0], eyes[t, i, 1]
+                dx, dy = bx - ax, by - ay
+                if math.hypot(dx, dy) > reach[i]:
+                    continue
+                if half[i] < math.pi and (dx != 0.0 or dy != 0.0):
+                    off = math.atan2(dy, dx) - headings[t, i]
+                    off -= 2 * math.pi * np.rint(off / (2 * math.pi))
+                    if abs(off) > half[i]:
+                        continue
+                if _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):
+                    looked[k, i] += rates[i]
+                    if looked[k, i] >= patience[k, i]:
+                        when[k], who[k] = t, i
+                        caught = True
+                        break
+            if not caught:
+                free[kept] = k
+                kept += 1
+        left = kept
+        if left == 0:
+            break
+
+
+@_compiled
+def _meetings(occupied, rates, hidden, which, patience, looked, when, who):  # type: ignore[no-untyped-def]
+    free = which.copy()
+    left = len(free)
+    for t in range(len(hidden)):
+        kept = 0
+        for n in range(left):
+            k = free[n]
+            caught = False
+            for i in range(occupied.shape[1]):
+                if occupied[t, i] == hidden[t, k]:
+                    looked[k, i] += rates[i]
+                    if looked[k, i] >= patience[k, i]:
+                        when[k], who[k] = t, i
+                        caught = True
+                        break
+            if not caught:
+                free[kept] = k
+                kept += 1
+        left = kept
+        if left == 0:
+            break
+
+
+def _grid(grid: WallGrid) -> tuple[object, ...]:
+    return grid.walls, grid.first, grid.members, *grid.origin, grid.size, grid.columns, grid.rows
+
+
+def seen_pairs(grid: WallGrid, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return whether no wall is between ``a[k]`` and ``b[k]``, both of shape (K, 2), metres."""
+    return cast(NDArray[np.bool_], _pairs(*_grid(grid), np.asarray(a, np.float64), np.asarray(b, np.float64)))
+
+
+def blocked_moves(grid: WallGrid, track: NDArray[Any]) -> int:
+    """Count the moves that went through a wall, which must be none; ``track`` has shape (T, K, 2), metres."""
+    return int(_blocked(*_grid(grid), track))
+
+
+@dataclass(frozen=True, slots=True)
+class Lookers:
+    """P robots with their eyes.
+
+    Attributes
+    ----------
+    reach : ndarray, shape (P,)
+        How far each sees, metres.
+    half : ndarray, shape (P,)
+        Half of its field of view, radians.
+    rates : ndarray, shape (P,)
+        Attention that it pays in a physics step, see :attr:`geomsim.sensing.Sensor.attention`.
+    """
+
+    reach: NDArray[np.float64]
+    half: NDArray[np.float64]
+    rates: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Looked:
+    """What robots have seen of K evaders so far; changed by every pass.
+
+    Attributes
+    ----------
+    patience : ndarray, shape (K, P)
+        Attention at which each robot notices each evader.
+    paid : ndarray, shape (K, P)
+        Attention paid so far.
+    """
+
+    patience: NDArray[np.float64]
+    paid: NDArray[np.float64]
+
+
+def first_looks(
+    grid: WallGrid,
+    lookers: Lookers,
+    eyes: NDArray[np.float64],
+    headings: NDArray[np.float64],
+    targets: NDArray[np.float32],
+    which: NDArray[np.intp],
+    looked: Looked,
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Find the first time at which a team notices each evader by sight.
+
+    Parameters
+    ----------
+    grid : WallGrid
+        Walls.
+    lookers : Lookers
+        P robots.
+    eyes, headings : ndarray, shape (T, P, 2) and (T, P)
+        Where they are, metres, and look, radians.
+    targets : ndarray of float32, shape (T, K, 2)
+        Where the evaders are, metres.
+    which : ndarray of intp
+        The evaders to be looked for.
+    looked : Looked
+        What was seen before.
+
+    Returns
+    -------
+    when, who : ndarray of intp, shape (K,)
+        Index into T and into P; -1 for an evader that was not noticed or not looked for.
+    """
+    when, who = _none(targets.shape[1])
+    _looks(
+        *_grid(grid),
+        eyes,
+        headings,
+        lookers.reach,
+        lookers.half,
+        lookers.rates,
+        targets,
+        which,
+        looked.patience,
+        looked.paid,
+        when,
+        who,
+    )
+    return when, who
+
+
+def first_meetings(
+    lookers: Lookers,
+    occupied: NDArray[np.int32],
+    hidden: NDArray[np.int32],
+    which: NDArray[np.intp],
+    looked: Looked,
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Find the first time at which a team notices each evader in a robot's own cell.
+
+    Like :func:`first_looks`, with the cells of the robots, shape (T, P), and of the evaders, shape (T, K).
+    """
+    when, who = _none(hidden.shape[1])
+    _meetings(occupied, lookers.rates, hidden, which, looked.patience, looked.paid, when, who)
+    return when, who
+
+
+def _none(count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    return np.full(count, -1, dtype=np.intp), np.full(count, -1, dtype=np.intp)
