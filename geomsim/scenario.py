@@ -192,11 +192,10 @@ def read_scenario(path: Path | None, flags: dict[str, Any]) -> Scenario:
         raise ScenarioError(_sentence(exc, path, flags)) from exc
     if scenario.plan.endswith(".toml"):
         raise ScenarioError(f"{scenario.plan} is a scenario, not a floor plan: give it with --scenario.")
-    whole = {"plan": scenario.plan, "cells": scenario.cells}
-    whole = {
-        k: str(Path(v).resolve()) for k, v in whole.items() if v not in (None, *bundled_names()) and Path(v).is_file()
-    }
-    return scenario.model_copy(update=whole)
+    named = bundled_names()
+    told_files = {"plan": scenario.plan, "cells": scenario.cells}
+    files = {key: Path(told) for key, told in told_files.items() if told is not None and told not in named}
+    return scenario.model_copy(update={key: str(file.resolve()) for key, file in files.items() if file.is_file()})
 
 
 def _load(path: Path) -> dict[str, Any]:

@@ -92,9 +92,8 @@ def _result(cells: CellMap, report: CellReport, certificate: Certificate, second
 
 
 def _tell(told: dict[str, Any], radius: float) -> None:
-    say(
-        f"{told['plan']}: {told['cells']} cells, {told['portals']} portals, {told['area']:.1f} m2, {told['seconds']:.2f} s"
-    )
+    size = f"{told['cells']} cells, {told['portals']} portals, {told['area']:.1f} m2"
+    say(f"{told['plan']}: {size}, {told['seconds']:.2f} s")
     say(f"covered {told['coverage']:.9f}, overlap {told['overlap']:.1e}, least convexity {told['convexity']:.6f}")
     say(f"connected parts of the free space: {told['free_components']}, of the cell graph: {told['graph_components']}")
     bounds = told["certificate"]
