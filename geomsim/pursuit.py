@@ -17,7 +17,7 @@ from geomsim.seeds import Streams
 from geomsim.team import Evader, Team, place_evader, place_team
 from geomsim.teamwork import Teamwork
 from maps import FloorPlan, GeomsimError, nearest
-from planners import AreaSpeedDegree, CaptureModel, MotionModel, SameCell
+from planners import AreaSpeedDegree, CaptureModel, MotionModel, SameCell, SearchGraph
 
 __all__ = ["CAPTURE_RULES", "HELD_UP", "Timing", "believed_capture", "check_pursuit", "run_episode"]
 
@@ -25,6 +25,12 @@ CAPTURE_RULES = {
     "sight": "a pursuer has a free line of sight to the evader, within its range and field of view",
     "cell": "a pursuer is in the evader's cell (the paper's assumption)",
 }
+
+#: positions that a record may hold, of all bodies at all physics steps: about a gigabyte while it is made
+MOST_POSITIONS = 20_000_000
+
+#: belief steps that a pursuer may need for the longest way between two checkpoints: planners look at each of them
+MOST_BELIEF_STEPS = 10_000
 
 #: a body that is held up for so long is reported, seconds
 HELD_UP = 10.0
@@ -56,7 +62,7 @@ class Timing:
                     f"The time {name.replace('_', ' ')} must be positive and finite, but is {value:g} s."
                 )
         ratio = self.belief_step / self.physics_step
-        if ratio < 1 or abs(ratio - round(ratio)) > 1e-6:
+        if not 1 <= ratio < math.inf or abs(ratio - round(ratio)) > 1e-6:
             raise GeomsimError(
                 f"The belief step, {self.belief_step:g} s, must be a multiple of the physics step, "
                 f"{self.physics_step:g} s."
@@ -124,6 +130,8 @@ def run_episode(
     if plan is not cells.plan and not plan.space.equals(cells.plan.space):
         raise GeomsimError(f"The cells were made of plan {cells.plan.name!r}, not of {plan.name!r}.")
     check_pursuit(cells, team, evader, capture)
+    _check_steps(team, evader, timing)
+    _check_hops(SearchGraph.from_cells(cells), team, timing)
     seeds = seed, seed if team_seed is None else team_seed
     pursuit = _Pursuit(plan, cells, team, evader, seeds, capture, motion or AreaSpeedDegree(evader.speed), timing)
     outcome = pursuit.run(progress)
@@ -143,6 +151,35 @@ def check_pursuit(cells: CellMap, team: Team, evader: Evader, capture: str) -> N
             raise GeomsimError(
                 f"The {who}'s radius, {radius:g} m, is larger than the {cells.radius:g} m that the cells were made for."
             )
+
+
+def _check_steps(team: Team, evader: Evader, timing: Timing) -> None:
+    """Refuse clocks with which a body would miss walls, or a pursuit would outgrow memory or patience."""
+    for who, speed, radius in (("pursuer", team.speed, team.radius), ("evader", evader.speed, evader.radius)):
+        if speed * timing.physics_step > radius:
+            raise GeomsimError(
+                f"The {who} of radius {radius:g} m would move {speed * timing.physics_step:g} m, more than that, in "
+                f"a physics step of {timing.physics_step:g} s and might miss a wall: make the step shorter, the body "
+                "slower or larger."
+            )
+    bodies = team.pursuers + 1
+    positions = timing.limit / timing.physics_step * bodies
+    if positions > MOST_POSITIONS:
+        raise GeomsimError(
+            f"A pursuit of {timing.limit:g} s in steps of {timing.physics_step:g} s with {bodies} bodies may come to "
+            f"{positions:.3g} recorded positions, but {MOST_POSITIONS:,} are the most: make the time limit shorter or "
+            "the physics step longer."
+        )
+
+
+def _check_hops(graph: SearchGraph, team: Team, timing: Timing) -> None:
+    """Refuse belief steps so short, or pursuers so slow, that planning for the next cell would take for ever."""
+    steps = float(graph.length.max(initial=0.0)) / team.speed / timing.belief_step
+    if steps > MOST_BELIEF_STEPS:
+        raise GeomsimError(
+            f"A pursuer of {team.speed:g} m/s needs up to {steps:.3g} belief steps of {timing.belief_step:g} s from "
+            f"one cell to the next, but {MOST_BELIEF_STEPS:,} are the most: make the belief step longer."
+        )
 
 
 @dataclass(slots=True)

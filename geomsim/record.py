@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from discretize import CellMap, Portal
 from geomsim.episode import Episode, Outcome, Status
 from geomsim.files import replacing
+from geomsim.recordchecks import PLAIN, check_shapes, check_types, check_values
 from maps import FloorPlan, GeomsimError, Label, Repair
 
 __all__ = ["FORMAT", "RecordError", "read_record", "write_record"]
@@ -24,18 +25,6 @@ __all__ = ["FORMAT", "RecordError", "read_record", "write_record"]
 #: raised by one whenever a reader of the format before would misread a record
 FORMAT = 1
 _KIND = "geomsim episode"
-_PLAIN = (
-    "times",
-    "pursuers",
-    "headings",
-    "pursuer_cells",
-    "evader",
-    "evader_cells",
-    "belief_times",
-    "beliefs",
-    "decision_times",
-    "decision_pursuers",
-)
 
 
 class RecordError(GeomsimError):
@@ -57,7 +46,7 @@ def write_record(episode: Episode, path: Path) -> Path:
     OutputError
         If it cannot be written.
     """
-    arrays: dict[str, NDArray[Any]] = {name: getattr(episode, name) for name in _PLAIN}
+    arrays: dict[str, NDArray[Any]] = {name: getattr(episode, name) for name in PLAIN}
     arrays["decision_paths"], arrays["decision_splits"] = _join(episode.decision_paths, np.dtype(np.int32))
     arrays |= _pack_plan(episode.plan) | _pack_cells(episode.cells)
     outcome = episode.outcome
@@ -90,6 +79,8 @@ def read_record(path: Path) -> Episode:
         If there is no such file, or it is no record, damaged, or of another format.
     """
     try:
+        if path.exists() and not path.is_file():
+            raise RecordError(f"{path} is no file, so it is no episode record.")
         # opened here, since NumPy leaves a file open that turns out to be no archive
         with path.open("rb") as stream:
             file = np.load(stream, allow_pickle=False)
@@ -102,10 +93,12 @@ def read_record(path: Path) -> Episode:
         raise RecordError(f"{path} is no episode record, or a damaged one.") from exc
     meta = _meta(arrays, path)
     try:
+        check_types(arrays)
         episode = _episode(arrays, meta)
-    except (KeyError, ValueError, IndexError, TypeError, shapely.errors.ShapelyError) as exc:
+        check_shapes(episode)
+        check_values(episode)
+    except (KeyError, ValueError, IndexError, TypeError, RecursionError, shapely.errors.ShapelyError) as exc:
         raise RecordError(f"The episode record {path} is damaged: {type(exc).__name__} {exc}") from exc
-    _check_shapes(episode, path)
     return episode
 
 
@@ -113,7 +106,7 @@ def _meta(arrays: Mapping[str, NDArray[Any]], path: Path) -> dict[str, Any]:
     try:
         meta = json.loads(str(arrays["meta"]))
         kind, version = meta["kind"], meta["format"]
-    except (KeyError, TypeError, json.JSONDecodeError) as exc:
+    except (KeyError, TypeError, ValueError, RecursionError) as exc:
         raise RecordError(f"{path} is no episode record.") from exc
     if kind != _KIND or version != FORMAT:
         raise RecordError(f"{path} is a record of format {version!r}, but this version of geomsim reads {FORMAT}.")
@@ -138,28 +131,8 @@ def _episode(arrays: Mapping[str, NDArray[Any]], meta: dict[str, Any]) -> Episod
         cells=_unpack_cells(arrays, plan),
         decision_paths=_split(arrays["decision_paths"], arrays["decision_splits"]),
         outcome=outcome,
-        **{name: arrays[name] for name in _PLAIN},
+        **{name: arrays[name] for name in PLAIN},
     )
-
-
-def _check_shapes(episode: Episode, path: Path) -> None:
-    t, b, n, k = len(episode.times), len(episode.belief_times), len(episode.cells), len(episode.decision_times)
-    r = episode.pursuers.shape[1] if episode.pursuers.ndim == 3 else -1
-    expected = {
-        "pursuers": (t, r, 2),
-        "headings": (t, r),
-        "pursuer_cells": (t, r),
-        "evader": (t, 2),
-        "evader_cells": (t,),
-        "beliefs": (b, n + 1),
-        "decision_pursuers": (k,),
-    }
-    for name, shape in expected.items():
-        found = getattr(episode, name).shape
-        if found != shape:
-            raise RecordError(f"The episode record {path} is damaged: {name} has shape {found}, not {shape}.")
-    if t == 0 or b == 0 or len(episode.decision_paths) != k:
-        raise RecordError(f"The episode record {path} is damaged: it holds no time steps or too few paths.")
 
 
 def _text(value: object) -> NDArray[np.str_]:

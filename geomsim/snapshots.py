@@ -20,10 +20,10 @@ from geomsim.drawing.raster import Image, Raster, blank
 from geomsim.drawing.scale import ProbabilityScale
 from geomsim.drawing.surface import Surface
 from geomsim.drawing.theme import DrawingError, Theme, find_theme
+from geomsim.drawing.vector import VectorSheet, is_vector
 from geomsim.drawing.vectorfloor import VectorFloor
 from geomsim.drawing.viewport import Box, Viewport
 from geomsim.episode import Episode
-from maps import nearest
 
 __all__ = ["draw_snapshots", "snapshot_times", "write_snapshots"]
 
@@ -49,14 +49,8 @@ def write_snapshots(
     GeomsimError
         If an option is out of range or the file cannot be written.
     """
-    kind = path.suffix.lower()
-    if kind == ".png":
+    if not is_vector(path):
         return write_png(draw_snapshots(episode, times=times, panels=panels, width=width, theme=theme), path)
-    if kind not in (".svg", ".pdf"):
-        hint = nearest(path.suffix, (".png", ".svg", ".pdf"))
-        raise DrawingError(f"A contact sheet cannot be written as {path.name!r}: {hint}")
-    from geomsim.drawing.vector import VectorSheet
-
     layout = _Layout.of(episode, snapshot_times(episode, times, panels), width)
     colours = find_theme(theme)
     sheet = VectorSheet(layout.width, layout.height, colours.page)
@@ -181,7 +175,7 @@ def snapshot_times(episode: Episode, times: Sequence[float] | None, panels: int)
     if times is None:
         if not 1 <= panels <= 60:
             raise DrawingError(f"A contact sheet has 1 to 60 panels, not {panels}.")
-        return [float(t) for t in np.linspace(0.0, end, panels)] if panels > 1 else [end]
+        return [float(t) for t in np.unique(np.linspace(0.0, end, panels))] if panels > 1 else [end]
     if not times:
         raise DrawingError("A contact sheet needs at least one time.")
     for time in times:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -14,7 +15,7 @@ import pytest
 
 from geomsim import Episode
 from geomsim.cli import main
-from geomsim.cli.flags import ScenarioFlags
+from geomsim.cli.flags import PlanFlags, ScenarioFlags
 from geomsim.scenario import Scenario
 from planners import Decoupled
 
@@ -69,7 +70,7 @@ def test_run_house(call) -> None:
     assert (told["cells"], told["seed"]) == (9, 3)
     assert told["scenario"]["plan"] == "house"
     files = {kind: Path(path) for kind, path in told["files"].items()}
-    assert set(files) == {"scenario", "record", "snapshots", "video", "frames"}
+    assert set(files) == {"scenario", "record", "snapshots", "replay", "video", "frames"}
     episode = Episode.load(files["record"])
     assert episode.outcome.time == told["capture_time"]
     assert cv2.imread(str(files["snapshots"])).std() > 10
@@ -82,7 +83,17 @@ def test_run_house(call) -> None:
     assert cv2.imread(str(pictures[-1])).shape == (720, 1280, 3)
     assert not list(files["record"].parent.rglob("*part*"))
 
-    again = call("run", "--scenario", files["scenario"], "--json", "--no-video", "--no-snapshots", "--out", "again")
+    again = call(
+        "run",
+        "--scenario",
+        files["scenario"],
+        "--json",
+        "--no-video",
+        "--no-snapshots",
+        "--no-replay",
+        "--out",
+        "again",
+    )
     told_again = json.loads(again[1])
     for key in ("capture_time", "captured_by", "capture_position", "predicted_capture_probability", "scenario"):
         assert told_again[key] == told[key]
@@ -99,7 +110,7 @@ def test_run_tells_a_person(call) -> None:
 
 def test_render_draws_the_same_again(call) -> None:
     call("run", "house", "--no-video", "--out", "run")
-    code, out, _ = call("render", "run/episode.npz", "--no-video", "--out", "again", "--json")
+    code, out, _ = call("render", "run/episode.npz", "--no-video", "--no-replay", "--out", "again", "--json")
     assert code == 0
     assert json.loads(out)["files"] == {"snapshots": "again/snapshots.png"}
     assert Path("again/snapshots.png").read_bytes() == Path("run/snapshots.png").read_bytes()
@@ -162,9 +173,37 @@ def test_listings(call, command: str) -> None:
         (["run", "house", "--out", "/dev/null/there"], "/dev/null/there"),
         (["run", "house", "--method", "exakt"], "exact"),
         (["run", "house", "--planner", "random", "--depth", "3"], "depth"),
+        (["run", "house", "--evader-start", "12"], "numbered from 1 to 9"),
+        (["run", "house", "--speed", "50"], "might miss a wall"),
+        (["run", "house", "--evader-speed", "1e308"], "might miss a wall"),
+        (["run", "house", "--radius", "1e-308"], "might miss a wall"),
+        (["run", "house", "--speed", "1e-308"], "belief steps"),
+        (["run", "house", "--time-limit", "1e308"], "recorded positions"),
+        (["run", "house", "--physics-step", "1e-9"], "recorded positions"),
+        (["run", "house", "--belief-step", "1e308"], "multiple of the physics step"),
+        (["run", "house", "--physics-step", "1e-308"], "recorded positions"),
+        (["run", "a\nb\x1b[31m"], "a b\\x1b[31m"),
+        (["run", "house", "--out", "a\0b"], "output folder"),
+        (["run", "house", "--out", "new/" + "x" * 300], "output folder"),
+        (["discretize", "house", "--out", "new/" + "x" * 300], "output folder"),
+        (["run", "house", "--pursuers", "9" * 5000], "--pursuers"),
+        (["run", "house", "--pursuers", "1.5"], "--pursuers"),
+        (["run", "house", "--seed", "0.5"], "--seed"),
         (["discretize", "offise"], "office"),
         (["discretize"], "plan"),
         (["render", "none.npz"], "none.npz"),
+        (["run", "house", "--video-format", "avi"], "--video-format is not 'avi'"),
+        (["run", "house", "--snapshots-format", "gif"], "--snapshots-format is not 'gif'"),
+        (["run", "house", "--theme", "dimmed"], "dimmed"),
+        (["run", "house", "--size", "1280"], "--size takes width and height"),
+        (["run", "house", "--size", "99999x2"], "at most 8192"),
+        (["run", "house", "--size", "8x8"], "too small"),
+        (["run", "house", "--times", "0,soon"], "--times takes seconds"),
+        (["run", "house", "--fps", "0"], "--fps must be above 0"),
+        (["run", "house", "--speedup", "nan"], "--speedup must be above 0"),
+        (["run", "house", "--speedup", "2", "--length", "9"], "give one of them"),
+        (["convert", "house", "house.xyz"], "house.xyz"),
+        (["predict", "house", "--start", "12"], "numbered from 1 to 9"),
         (["dance"], "dance"),
     ],
 )
@@ -178,6 +217,63 @@ def test_bad_input_gets_one_sentence(call, arguments: list[str], sentence: str, 
     assert err.count("\n") == 1
     assert "Traceback" not in err
     assert list(Path().iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["../../outside", "/outside", "..", "a\nb", "x" * 300, "\u00e9" * 200, ""])
+def test_a_plans_name_leads_nowhere_else(call, tmp_path: Path, name: str) -> None:
+    Path("mine").mkdir()
+    Path("mine/plan.geojson").write_text(json.dumps(TWO_ROOMS | {"name": name}))
+    code, out, err = call("discretize", "mine/plan.geojson", "--no-picture", "--json")
+    assert (code, err) == (0, "")
+    folder = Path(json.loads(out)["files"]["cells"]).parent
+    assert folder.parent == Path("geomsim-output")
+    assert not folder.name.startswith(".")
+    assert {p.name for p in tmp_path.iterdir()} == {"mine", "geomsim-output"}
+
+
+@pytest.mark.parametrize("text", ["a = " + "[" * 20_000, "seed = " + "1" * 5000, "seed = 1\nseed = 2", "plan = 'hou"])
+def test_what_is_no_toml_is_refused(call, text: str) -> None:
+    Path("s.toml").write_text(text)
+    code, out, err = call("run", "--scenario", "s.toml")
+    assert (code, out) == (2, "")
+    assert err.startswith("geomsim: s.toml is not valid TOML: ")
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("redirection", "code", "sentence"),
+    [
+        ("| head -c 0", 0, ""),
+        (">&-", 0, ""),
+        ("> /dev/full", 2, "geomsim: Cannot write to the standard output: No space left on device.\n"),
+        ("2>&- > out", 0, ""),
+    ],
+)
+@pytest.mark.parametrize("command", ["maps --json", "discretize office --json --no-picture", "maps"])
+def test_a_stdout_that_takes_nothing(tmp_path: Path, command: str, redirection: str, code: int, sentence: str) -> None:
+    python = f"{shlex.quote(sys.executable)} -c 'from geomsim.cli import main; main()' {command}"
+    done = subprocess.run(
+        ["bash", "-c", f"set -o pipefail; {python} {redirection}"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert (done.returncode, done.stderr, done.stdout) == (code, sentence, "")
+
+
+def test_signs_that_the_terminal_lacks_are_escaped(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", "from geomsim.cli import main; main()", "discretize", "house", "--out", "caf\u00e9"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONIOENCODING": "ascii"},
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "caf\\xe9" in done.stdout
 
 
 def test_bad_scenario_files_are_named(call) -> None:
@@ -195,8 +291,10 @@ def test_interruption_keeps_what_was_finished(tmp_path: Path, name: str) -> None
         [
             sys.executable,
             "-c",
-            "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);"  # a parent may ignore it
-            "from geomsim.cli import main; main()",
+            (
+                "import signal; signal.signal(signal.SIGINT, signal.default_int_handler);"  # a parent may ignore it
+                "from geomsim.cli import main; main()"
+            ),
             *arguments,
             "--time-limit",
             "100000",
@@ -226,6 +324,34 @@ def test_interruption_keeps_what_was_finished(tmp_path: Path, name: str) -> None
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["episode.npz", "scenario.toml"]
 
 
+def test_interruption_while_the_record_is_written_keeps_it(call, monkeypatch: pytest.MonkeyPatch) -> None:
+    save, calls = Episode.save, []
+
+    def interrupted_once(episode: Episode, path: Path) -> Path:
+        calls.append(path)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        return save(episode, path)
+
+    monkeypatch.setattr(Episode, "save", interrupted_once)
+    code, out, err = call("run", "house", "--json", "--out", "out")
+    assert code == 130
+    assert err.startswith("geomsim: Interrupted while drawing; what was finished is in out.")
+    assert json.loads(out)["captured"]
+    assert sorted(p.name for p in Path("out").iterdir()) == ["episode.npz", "scenario.toml"]
+
+
+@pytest.mark.parametrize("command", ["discretize", "run"])
+def test_interruption_before_anything_is_done(call, monkeypatch: pytest.MonkeyPatch, command: str) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("maps.read_plan", interrupted)
+    monkeypatch.setattr("geomsim.scenario.read_plan", interrupted)
+    assert call(command, "house", "--json") == (130, "", "geomsim: Interrupted.\n")
+    assert list(Path().iterdir()) == []
+
+
 def test_a_foreign_package_of_our_names_is_refused(tmp_path: Path) -> None:
     (tmp_path / "planners.py").write_text("")
     code = "import sys; sys.path.insert(0, '.'); import geomsim"
@@ -241,11 +367,18 @@ def test_a_foreign_package_of_our_names_is_refused(tmp_path: Path) -> None:
     assert "geomsim needs its own package 'planners'" in done.stderr
 
 
-@pytest.mark.parametrize("key", [key for key, field in Scenario.model_fields.items() if key != "plan"])
+# what a person must give, or what has no default to tell
+NO_DEFAULT = {"plan", "resolution", "units", "options", "cells"}
+
+
+@pytest.mark.parametrize("key", [key for key in Scenario.model_fields if key not in NO_DEFAULT])
 def test_help_tells_defaults(key: str) -> None:
-    doc = " ".join((ScenarioFlags.__doc__ or "").split(f"    {key}\n", 1)[1].split())
+    docs = f"{PlanFlags.__doc__}{ScenarioFlags.__doc__}"
+    doc = " ".join(docs.split(f"    {key}\n", 1)[1].split())
     default = Scenario.model_fields[key].default
     words = {"start": "the plan's own", "range": "without limit", "evader_start": "a random one"}
+    words |= {"level": "the largest", "structure": "if it is plainly a scan"}
+    words |= {"motion_speed": "as fast as it is", "clearance": "the largest radius"}
     words |= {"cost": Decoupled().cost, "depth": str(Decoupled().depth)}
     told = words.get(key, f"{default:g}" if isinstance(default, float) else str(default))
     assert doc[: doc.index("]") + 1].endswith(f" [default: {told}]"), doc

@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 from dataclasses import fields
 from pathlib import Path
 
@@ -76,6 +77,57 @@ def test_a_part_of_another_length_is_refused(arrays: dict[str, np.ndarray], tmp_
     np.savez(bad, **(arrays | {name: arrays[name][:-1]}))
     with pytest.raises(RecordError, match="damaged"):
         Episode.load(bad)
+
+
+def _outcome(arrays: dict[str, np.ndarray], **changed: object) -> np.ndarray:
+    meta = json.loads(str(arrays["meta"]))
+    meta["outcome"] |= changed
+    return np.array(json.dumps(meta))
+
+
+@pytest.mark.parametrize(
+    ("name", "spoil"),
+    [
+        ("times", lambda a: a["times"][::-1]),
+        ("times", lambda a: a["times"] * np.nan),
+        ("times", lambda a: a["times"][0]),
+        ("times", lambda a: a["times"].astype(complex)),
+        ("pursuers", lambda a: a["pursuers"] + 1e300),
+        ("evader", lambda a: a["evader"] - 1e4),
+        ("pursuers", lambda a: a["pursuers"].astype(str)),
+        ("evader_cells", lambda a: a["evader_cells"] + 99),
+        ("pursuer_cells", lambda a: a["pursuer_cells"] - 99),
+        ("decision_pursuers", lambda a: a["decision_pursuers"] + 99),
+        ("decision_paths", lambda a: a["decision_paths"] - 99),
+        ("portal_cells", lambda a: a["portal_cells"] + 99),
+        ("checkpoints", lambda a: a["checkpoints"][:-1]),
+        ("beliefs", lambda a: -a["beliefs"]),
+        ("meta", lambda a: _outcome(a, pursuer=99)),
+        ("meta", lambda a: _outcome(a, pursuer="one")),
+        ("meta", lambda a: _outcome(a, cell=-1)),
+        ("meta", lambda a: _outcome(a, status="lost")),
+    ],
+)
+def test_values_that_cannot_be_are_refused(arrays: dict[str, np.ndarray], tmp_path: Path, name: str, spoil) -> None:
+    bad = tmp_path / "bad.npz"
+    np.savez(bad, **(arrays | {name: spoil(arrays)}))
+    with pytest.raises(RecordError, match="damaged"):
+        Episode.load(bad)
+
+
+def test_text_nested_without_end_is_refused(arrays: dict[str, np.ndarray], tmp_path: Path) -> None:
+    bad = tmp_path / "bad.npz"
+    np.savez(bad, **(arrays | {"meta": np.array("[" * 50_000)}))
+    with pytest.raises(RecordError, match="no episode record"):
+        Episode.load(bad)
+
+
+def test_what_is_no_file_is_not_waited_for(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.npz"
+    os.mkfifo(pipe)
+    for path in (pipe, tmp_path):
+        with pytest.raises(RecordError, match="is no file"):
+            Episode.load(path)
 
 
 def test_every_truncation_is_refused(pursuit: Episode, tmp_path: Path) -> None:

@@ -5,19 +5,20 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 from cyclopts import App, CycloptsError, UnusedCliTokensError
 
-from geomsim.cli.console import complain
+from geomsim.cli.console import complain, finish_stdout, speak_plainly
 
-__all__ = ["main"]
+__all__ = ["run_app"]
 
 app = App(
     name="geomsim",
     help="Find somebody who moves about a building, with a team of robots.",
     help_epilogue="Exit codes: 0 done, 2 bad input, 130 interrupted. --debug shows where an error comes from.",
     result_action="return_value",
+    suppress_keyboard_interrupt=False,
     version_flags=["--version"],
     version=lambda: _version(),
 )
@@ -37,14 +38,15 @@ app.command("geomsim.cli.listing:maps", name="maps", help="The bundled floor pla
 app.command("geomsim.cli.listing:planners", name="planners", help="The planners, each with its source.")
 
 
-def main(argv: Sequence[str] | None = None) -> None:
-    """Run the command line and exit: 0 done, 2 bad input, 130 interrupted, 1 a fault of the program itself."""
-    tokens = list(sys.argv[1:] if argv is None else argv)
+def run_app(tokens: Sequence[str]) -> NoReturn:
+    """Run a command and exit: 0 done, 2 bad input, 130 interrupted, 1 a fault of the program itself."""
     debug = "--debug" in tokens
     tokens = [token for token in tokens if token != "--debug"]
-    signal.signal(signal.SIGTERM, _interrupt)
     try:
+        signal.signal(signal.SIGTERM, _interrupt)
+        speak_plainly()
         code = app(tokens, exit_on_error=False, print_error=False)
+        finish_stdout()
     except Exception as exc:
         if debug:
             raise
@@ -59,17 +61,12 @@ def _explain(exc: Exception) -> int:
     """Print the sentence of an error and return the exit code."""
     from maps import GeomsimError
 
-    if isinstance(exc, GeomsimError):
-        complain(str(exc))
-        return 2
     if isinstance(exc, UnusedCliTokensError):
         complain(f"Unexpected argument {(exc.unused_tokens or ['?'])[0]!r}.")
         return 2
-    if isinstance(exc, CycloptsError):
-        complain(" ".join(str(exc).split()))
+    if isinstance(exc, GeomsimError | CycloptsError):
+        complain(str(exc))
         return 2
-    if isinstance(exc, BrokenPipeError):
-        return 0
     if isinstance(exc, MemoryError):
         complain("There is not enough memory for this plan or scenario.")
         return 2

@@ -110,7 +110,8 @@ def _report(result: Any, folder: Path, *, figures: bool, json: bool) -> None:
         f"{result.experiment.cells.plan.name}: {team} pursuers, {result.experiment.trials} trials a method, "
         f"capture by {result.experiment.capture}, {result.engine} engine, {result.wall_seconds:.1f} s"
     )
-    say(str(result.summary()))
+    for line in str(result.summary()).splitlines():
+        say(line)
     for note in result.notes:
         say(note)
     for kind, file in told["files"].items():

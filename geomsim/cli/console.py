@@ -2,28 +2,80 @@
 
 from __future__ import annotations
 
+import io
 import json
+import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
-__all__ = ["complain", "progress", "say", "say_json", "tally"]
+from geomsim.files import OutputError
+
+__all__ = ["complain", "finish_stdout", "progress", "say", "say_json", "speak_plainly", "tally"]
+
+#: an error sentence longer than this loses its middle: a wrong value may be as long as a file
+_LONGEST = 1000
+
+
+def speak_plainly() -> None:
+    """Let stdout and stderr show what their encoding has no signs for as escapes, instead of failing."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def complain(sentence: str) -> None:
-    """Print one sentence on stderr."""
-    sys.stderr.write(f"geomsim: {sentence}\n")
+    """Print one sentence on stderr, on one line whatever is quoted in it."""
+    line = _one_line(" ".join(sentence.split()))
+    if len(line) > _LONGEST:
+        line = f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 2 :]}"
+    if sys.stderr is not None:
+        with suppress(OSError):  # nobody listens
+            sys.stderr.write(f"geomsim: {line}\n")
+            sys.stderr.flush()
 
 
 def say(line: str) -> None:
-    """Print one line of the result on stdout."""
-    sys.stdout.write(line + "\n")
+    """Print one line of the result on stdout; nothing where stdout is closed."""
+    if sys.stdout is not None:
+        with _reader_may_be_gone():
+            sys.stdout.write(_one_line(line) + "\n")
 
 
 def say_json(result: dict[str, Any]) -> None:
     """Print one JSON object on stdout, on one line."""
-    sys.stdout.write(json.dumps(result, allow_nan=False) + "\n")
+    say(json.dumps(result, allow_nan=False))
+
+
+def finish_stdout() -> None:
+    """Hand over what was said.
+
+    Raises
+    ------
+    OutputError
+        If stdout cannot be written, a file on a full disk for instance.
+    """
+    if sys.stdout is not None:
+        with _reader_may_be_gone():
+            sys.stdout.flush()
+
+
+@contextmanager
+def _reader_may_be_gone() -> Iterator[None]:
+    """Take it as no error if the reader of stdout has gone, like ``head``; what else fails is an OutputError."""
+    try:
+        yield
+    except OSError as exc:
+        # what is left in the buffer would fail again when Python exits
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(exc, BrokenPipeError):
+            raise OutputError(f"Cannot write to the standard output: {exc.strerror}.") from exc
+
+
+def _one_line(text: str) -> str:
+    """Show control characters as escapes: names come from files, and a terminal would obey them."""
+    return "".join(c if c.isprintable() or c == " " else c.encode("unicode_escape").decode() for c in text)
 
 
 @contextmanager
@@ -32,7 +84,7 @@ def progress(what: str) -> Iterator[Callable[[float, float], None] | None]:
 
     Yields a function of what is done and what there is to do in all, or None in a pipe.
     """
-    if not sys.stderr.isatty():
+    if sys.stderr is None or not sys.stderr.isatty():
         yield None
         return
     from rich.console import Console
@@ -49,7 +101,7 @@ def tally() -> Iterator[Callable[[str, int, int], None] | None]:
 
     Yields a function of a work's name, what is done of it, and what there is to do; or None in a pipe.
     """
-    if not sys.stderr.isatty():
+    if sys.stderr is None or not sys.stderr.isatty():
         yield None
         return
     from rich.console import Console

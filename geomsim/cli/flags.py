@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any
 
-from cyclopts import Parameter
+from cyclopts import Parameter, Token
 
 from maps import FloorPlan, GeomsimError
 
 __all__ = ["JsonFlag", "OutFlag", "PlanFlags", "ScenarioFlags"]
+
+
+def _whole(kind: type, tokens: Sequence[Token]) -> int:  # noqa: ARG001 the signature that cyclopts calls
+    """Read a whole number; of 1.5, cyclopts itself would drop the half in silence."""
+    try:
+        return int(tokens[0].value)
+    except ValueError:
+        raise ValueError(f"{tokens[0].value!r} is no whole number.") from None
+
+
+WholeNumber = Annotated[int | None, Parameter(converter=_whole)]
 
 JsonFlag = Annotated[bool, Parameter(name="--json", negative="", help="Print one JSON object and nothing else.")]
 OutFlag = Annotated[
@@ -102,6 +114,8 @@ class ScenarioFlags(PlanFlags):
         How fast they believe it to be, metres a second. [default: as fast as it is]
     method
         How the plan is cut into cells. [default: exact]
+    cells
+        GeoJSON of cells that `geomsim discretize` wrote and a person may have changed, instead of a method.
     clearance
         Radius of the body for which portals and routes are made, metres. [default: the largest radius]
     time_limit
@@ -112,12 +126,12 @@ class ScenarioFlags(PlanFlags):
         Time between two physics steps, seconds. [default: 0.1]
     """
 
-    seed: int | None = None
-    pursuers: int | None = None
+    seed: WholeNumber = None
+    pursuers: WholeNumber = None
     start: str | None = None
     planner: str | None = None
     cost: str | None = None
-    depth: int | None = None
+    depth: WholeNumber = None
     option: tuple[str, ...] = ()
     capture: str | None = None
     range: float | None = None
@@ -126,12 +140,13 @@ class ScenarioFlags(PlanFlags):
     speed: float | None = None
     radius: float | None = None
     evader: str | None = None
-    evader_start: int | None = None
+    evader_start: WholeNumber = None
     evader_speed: float | None = None
     evader_radius: float | None = None
     motion: str | None = None
     motion_speed: float | None = None
     method: str | None = None
+    cells: str | None = None
     clearance: float | None = None
     time_limit: float | None = None
     belief_step: float | None = None

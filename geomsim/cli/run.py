@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from geomsim.cli.console import complain, progress, say, say_json
+from geomsim.cli.drawing import DrawFlags
 from geomsim.cli.flags import JsonFlag, OutFlag, ScenarioFlags
 
 __all__ = ["run"]
@@ -18,13 +19,11 @@ def run(
     *,
     scenario: Annotated[Path | None, Parameter(help="A scenario file (TOML); flags override its keys.")] = None,
     out: OutFlag = None,
-    video: Annotated[bool, Parameter(help="Write a video.")] = True,
-    snapshots: Annotated[bool, Parameter(help="Write a contact sheet of snapshots.")] = True,
-    frames: Annotated[bool, Parameter(negative="", help="Write every frame of the video as PNG.")] = False,
     json: JsonFlag = False,
+    drawing: DrawFlags = DrawFlags(),  # noqa: B008 a frozen value without fields set
     flags: ScenarioFlags = ScenarioFlags(),  # noqa: B008 a frozen value without fields set
 ) -> int:
-    """Run one pursuit and write its record, video and snapshots.
+    """Run one pursuit; write its record, video, snapshots and replay.
 
     Parameters
     ----------
@@ -32,60 +31,53 @@ def run(
         A bundled plan or a file, a GeoJSON or a ROS map for instance; `geomsim maps` lists what there is.
     """
     from geomsim.episode import Status
-    from geomsim.files import output_folder, write_text
+    from geomsim.files import default_folder, results_folder, write_text
     from geomsim.pursuit import run_episode
     from geomsim.scenario import read_scenario
     from geomsim.team import place_team
 
+    drawing.check()
     told = read_scenario(scenario, flags.given() | ({} if plan is None else {"plan": plan}))
     team, quarry, timing, motion = told.team(), told.quarry(), told.timing(), told.belief_motion()
     place, cells = told.place()
     told = told.model_copy(update={"start": tuple(cell + 1 for cell in place_team(cells, team))})
-    folder = output_folder(out or Path("geomsim-output") / f"{place.name}-{told.seed}")
-
-    with progress("pursuit") as bar:
-        episode = run_episode(
-            place,
-            cells,
-            team,
-            quarry,
-            seed=told.seed,
-            capture=told.capture,
-            motion=motion,
-            timing=timing,
-            scenario=told.as_dict(),
-            progress=None if bar is None else lambda time, _: bar(time, told.time_limit),
-        )
-    _clear(folder)
-    files = {"scenario": write_text(folder / "scenario.toml", told.as_toml())}
-    files["record"] = episode.save(folder / "episode.npz")
+    with results_folder(out or default_folder(place.name, str(told.seed))) as folder:
+        with progress("pursuit") as bar:
+            episode = run_episode(
+                place,
+                cells,
+                team,
+                quarry,
+                seed=told.seed,
+                capture=told.capture,
+                motion=motion,
+                timing=timing,
+                scenario=told.as_dict(),
+                progress=None if bar is None else lambda time, _: bar(time, told.time_limit),
+            )
+        drawing.clear(folder)
+        interrupted = False
+        try:
+            record = episode.save(folder / "episode.npz")
+        except KeyboardInterrupt:
+            # the pursuit is finished, so it is kept; whoever presses Ctrl-C once more means it
+            interrupted = True
+            record = episode.save(folder / "episode.npz")
+        files = {"scenario": write_text(folder / "scenario.toml", told.as_toml()), "record": record}
     if episode.outcome.status is Status.INTERRUPTED:
         _report(episode, files, json=json)
         complain(f"Interrupted after {episode.outcome.time:.1f} s of the pursuit; what there is of it is in {folder}.")
         return 130
     try:
-        if snapshots:
-            files["snapshots"] = episode.save_snapshots(folder / "snapshots.png")
-        if video:
-            with progress("video") as bar:
-                files["video"] = episode.save_video(folder / "pursuit.mp4", progress=bar)
-        if frames:
-            with progress("frames") as bar:
-                files["frames"] = episode.save_frames(folder / "frames", progress=bar)
+        if interrupted:
+            raise KeyboardInterrupt
+        drawing.draw(episode, folder, files)
     except KeyboardInterrupt:
         _report(episode, files, json=json)
         complain(f"Interrupted while drawing; what was finished is in {folder}.")
         return 130
     _report(episode, files, json=json)
     return 0
-
-
-def _clear(folder: Path) -> None:
-    """Take away what an earlier run left in the folder, which would pass for this one's."""
-    for name in ("scenario.toml", "episode.npz", "snapshots.png", "pursuit.mp4", "replay.html"):
-        (folder / name).unlink(missing_ok=True)
-    for frame in (folder / "frames").glob("frame_*.png"):
-        frame.unlink()
 
 
 def _count(pursuers: int) -> str:

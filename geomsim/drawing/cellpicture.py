@@ -15,8 +15,10 @@ from geomsim.drawing.legend import draw_scale_bar
 from geomsim.drawing.playback import write_png
 from geomsim.drawing.raster import Image, Raster, blank
 from geomsim.drawing.surface import Surface
-from geomsim.drawing.text import text_width
+from geomsim.drawing.text import cut_text, text_width
 from geomsim.drawing.theme import Theme, find_theme
+from geomsim.drawing.vector import VectorSheet, is_vector
+from geomsim.drawing.vectorfloor import VectorFloor
 from geomsim.drawing.viewport import Box, Viewport
 from maps import FloorPlan
 
@@ -26,8 +28,22 @@ _HUES = (20.0, 75.0, 125.0, 190.0, 250.0, 315.0)
 
 
 def write_cells_picture(cells: CellMap, path: Path, *, width: int | None = None, theme: str = "light") -> Path:
-    """Write the picture of :func:`draw_cells` as PNG; GeomsimError if it cannot be written."""
-    return write_png(draw_cells(cells, width=width, theme=theme), path)
+    """Write the picture of :func:`draw_cells` as ``.png``, ``.svg`` or ``.pdf``.
+
+    Raises
+    ------
+    GeomsimError
+        If it cannot be written.
+    """
+    if not is_vector(path):
+        return write_png(draw_cells(cells, width=width, theme=theme), path)
+    colours = find_theme(theme)
+    wide, high, unit, box = _layout(cells, width)
+    sheet = VectorSheet(wide, high, colours.page)
+    floor = VectorFloor(cells, box, colours, unit)
+    floor.paint(sheet, _soft_colours(cells, colours))
+    _draw_over(sheet, cells, floor.view, colours, unit, floor.unit, wide)
+    return sheet.save(path)
 
 
 def draw_cells(cells: CellMap, *, width: int | None = None, theme: str = "light") -> Image:
@@ -48,6 +64,16 @@ def draw_cells(cells: CellMap, *, width: int | None = None, theme: str = "light"
         Blue first.
     """
     colours = find_theme(theme)
+    wide, high, unit, box = _layout(cells, width)
+    surface = Raster(blank(wide, high, colours.page))
+    floor = Floor(cells, box, colours, unit)
+    floor.paint(surface, _soft_colours(cells, colours))
+    _draw_over(surface, cells, floor.view, colours, unit, floor.unit, wide)
+    return surface.image
+
+
+def _layout(cells: CellMap, width: int | None) -> tuple[int, int, float, Box]:
+    """Return width and height of the picture, the pixels that a thin line takes, and the box of the plan."""
     if width is None:
         width = round(float(np.clip(1600 * np.sqrt(len(cells) / 300), 1600, 3200)))
     unit = 1.25 * float(np.sqrt(width / 1600))
@@ -55,14 +81,17 @@ def draw_cells(cells: CellMap, *, width: int | None = None, theme: str = "light"
     margin, header = round(16 * unit), round(46 * unit)
     tall = float(np.clip((y1 - y0) / (x1 - x0), 0.3, 1.2))
     box = Box(margin, header, width - margin, header + round((width - 2 * margin) * tall))
-    surface = Raster(blank(width, box.bottom + margin, colours.page))
-    floor = Floor(cells, box, colours, unit)
-    floor.paint(surface, _soft_colours(cells, colours))
-    _draw_routes(surface, cells, floor.view, colours, floor.unit)
-    _draw_repairs(surface, cells.plan, floor.view, colours, floor.unit)
-    _draw_numbers(surface, cells, floor.view, colours, unit)
-    _draw_header(surface, cells, floor.view, colours, unit, width)
-    return surface.image
+    return width, box.bottom + margin, unit, box
+
+
+def _draw_over(
+    surface: Surface, cells: CellMap, view: Viewport, theme: Theme, unit: float, fine: float, width: int
+) -> None:
+    """Draw what lies above the floor; ``fine`` is the unit of lines among cells."""
+    _draw_routes(surface, cells, view, theme, fine)
+    _draw_repairs(surface, cells.plan, view, theme, fine)
+    _draw_numbers(surface, cells, view, theme, unit)
+    _draw_header(surface, cells, view, theme, unit, width)
 
 
 def _soft_colours(cells: CellMap, theme: Theme) -> NDArray[np.uint8]:
@@ -130,7 +159,7 @@ def _draw_repairs(surface: Surface, plan: FloorPlan, view: Viewport, theme: Them
 
 def _draw_header(surface: Surface, cells: CellMap, view: Viewport, theme: Theme, unit: float, width: int) -> None:
     at = (16 * unit, 23 * unit)
-    name = cells.plan.name
+    name = cut_text(cells.plan.name, 0.3 * width, 20 * unit, bold=True)
     surface.text(name, at, 20 * unit, theme.text, bold=True)
     x = at[0] + text_width(name, 20 * unit, True) + 14 * unit
     told = f"{len(cells)} cells · {len(cells.portals)} portals · {cells.plan.area:.0f} m² · {cells.method}"

@@ -24,12 +24,15 @@ class Figures:
         Colours.
     unit : float
         Pixels that a thin line takes.
+    team : int
+        How many robots there are; ways that they share are drawn side by side.
     """
 
-    def __init__(self, view: Viewport, theme: Theme, unit: float) -> None:
+    def __init__(self, view: Viewport, theme: Theme, unit: float, team: int = 1) -> None:
         self._view = view
         self._theme = theme
         self._unit = unit
+        self._team = team
 
     def sight(self, surface: Surface, number: int, area: Array) -> None:
         """Draw the area that a robot sees, shape (k, 2), metres: lit from there."""
@@ -50,7 +53,8 @@ class Figures:
         """Draw where a robot intends to go, dashed, with a ring at the end."""
         if len(path) < 2:
             return
-        pixels = self._view.pixels(path)
+        aside = (number - (self._team - 1) / 2) * min(3.0, 9.0 / max(self._team - 1, 1)) * self._unit
+        pixels = self._view.pixels(path) + aside  # to the right and down, which tells both kinds of hallway apart
         colour = self._theme.robot(number)
         left = float(np.hypot(*np.diff(pixels, axis=0).T).sum())
         dash, gap = 7.0 * self._unit, 5.0 * self._unit

@@ -38,8 +38,8 @@ class Floor:
         Colours.
     unit : float
         Pixels that a thin line takes.
-    boundaries, portals : bool
-        Whether to dot the cell boundaries and mark the places to cross them.
+    portals : bool
+        Whether to mark the places to cross cell boundaries.
 
     Attributes
     ----------
@@ -58,7 +58,6 @@ class Floor:
         theme: Theme,
         unit: float,
         *,
-        boundaries: bool = True,
         portals: bool = True,
     ) -> None:
         self.box = box
@@ -71,9 +70,7 @@ class Floor:
 
         wall = _wall_cover(cells.plan, local, shape, 2.5 * unit, 1.5 * unit)
         self._is_wall = (wall > 0.5).astype(np.uint8)
-        layers = [(wall, theme.wall)]
-        if boundaries:
-            layers.insert(0, (_dot_cover(cells, local, shape, unit), theme.dots))
+        layers = [(_dot_cover(cells, local, shape, unit), theme.dots), (wall, theme.wall)]
         if portals:
             layers.insert(0, (_portal_cover(cells, local, shape, unit), theme.portal))
         self._where, self._keep, self._add = _flatten(layers)

@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+import shapely
+from numpy.typing import NDArray
 
+from geomsim.drawing.colours import lightness
 from geomsim.drawing.figures import Figures
 from geomsim.drawing.floor import Floor
 from geomsim.drawing.legend import draw_colour_bar, draw_scale_bar
@@ -15,7 +18,7 @@ from geomsim.drawing.scale import ProbabilityScale
 from geomsim.drawing.sight import Sight
 from geomsim.drawing.strip import CaptureStrip
 from geomsim.drawing.surface import Surface
-from geomsim.drawing.text import text_width
+from geomsim.drawing.text import cut_text, text_width
 from geomsim.drawing.theme import DrawingError, find_theme
 from geomsim.drawing.viewport import Box, Viewport
 from geomsim.episode import Episode
@@ -39,6 +42,8 @@ class FrameStyle:
         "shown", or "hidden" until it is captured, as the robots know it.
     belief, sight, plans, trails : bool
         Layers: cells shaded by probability, what each robot sees, where it intends to go, where it came from.
+    numbers : bool
+        Layer: the number of each cell that has room for it.
     note : str
         Something to say beside the time, such as the speed of a video.
     """
@@ -50,6 +55,7 @@ class FrameStyle:
     sight: bool = True
     plans: bool = True
     trails: bool = True
+    numbers: bool = False
     note: str = ""
 
     def __post_init__(self) -> None:
@@ -100,7 +106,7 @@ class FrameDrawer:
 
         self._timeline = Timeline(episode)
         self._floor = Floor(episode.cells, plan_box, theme, unit)
-        self._figures = Figures(self._floor.view, theme, unit)
+        self._figures = Figures(self._floor.view, theme, unit, episode.pursuers.shape[1])
         self._strip = CaptureStrip(episode, strip_box, theme, unit)
         self._sight = Sight(episode)
         self._scale = ProbabilityScale.of(episode.beliefs)
@@ -147,9 +153,21 @@ class FrameDrawer:
         if self._canvas.step != step:
             image = self._background.copy()
             share = shares(self.episode.beliefs[step]) if self.style.belief else np.zeros(len(self.episode.cells))
-            self._floor.paint(Raster(image), self._theme.ramp[self._scale.steps(share)])
+            colours = self._theme.ramp[self._scale.steps(share)]
+            self._floor.paint(Raster(image), colours)
+            if self.style.numbers:
+                self._draw_numbers(Raster(image), colours)
             self._canvas = _Canvas(step, image)
         return self._canvas.image
+
+    def _draw_numbers(self, surface: Surface, colours: NDArray[np.uint8]) -> None:
+        theme, size = self._theme, 12 * self.style.unit
+        far = np.abs(lightness(colours) - lightness(theme.ramp[:1])) > 0.3  # from the lightness of the page
+        for k, (cell, at) in enumerate(zip(self.episode.cells.cells, self.episode.cells.checkpoints, strict=True)):
+            room = self.view.scale * float(shapely.distance(cell.exterior, shapely.Point(at)))
+            if room > 0.6 * text_width(str(k + 1), size):  # never where the checkpoint is not a number
+                x, y = self.view.pixels(at)
+                surface.text(str(k + 1), (float(x), float(y)), size, theme.page if far[k] else theme.text, "centre")
 
     def _draw_background(self, legend: Box) -> Image:
         theme, unit, episode = self._theme, self.style.unit, self.episode
@@ -161,10 +179,11 @@ class FrameDrawer:
             draw_colour_bar(surface, legend, self._scale, theme, unit, title)
         draw_scale_bar(surface, legend, self._floor.view.scale, theme, unit)
         at = (16 * unit, 23 * unit)
-        surface.text(episode.plan.name, at, 20 * unit, theme.text, bold=True)
+        name = cut_text(episode.plan.name, 0.35 * self.style.size[0], 20 * unit, bold=True)
+        surface.text(name, at, 20 * unit, theme.text, bold=True)
         robots = episode.pursuers.shape[1]
         told = f"{robots} robot{'s' * (robots != 1)} · {len(episode.cells)} cells"
-        x = at[0] + text_width(episode.plan.name, 20 * unit, True) + 14 * unit
+        x = at[0] + text_width(name, 20 * unit, True) + 14 * unit
         surface.text(told, (x, at[1] + unit), 14 * unit, theme.muted)
         return image
 

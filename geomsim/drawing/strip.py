@@ -35,7 +35,7 @@ class CaptureStrip:
         self._times = episode.belief_times
         self._values = episode.beliefs[:, 0]
         self._outcome = episode.outcome
-        self._end = max(float(episode.times[-1]), 1e-9)
+        self._end = max(float(episode.times[-1]), 1.0)
         size = 12.0 * unit
         left = text_width("100 %", size) + round(8 * unit)
         self._plot = box.inset(left, round(20 * unit), round(52 * unit), round(20 * unit))

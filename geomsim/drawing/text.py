@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from geomsim.drawing.colours import bgr
 from geomsim.drawing.surface import Align
 
-__all__ = ["draw_text", "text_width"]
+__all__ = ["cut_text", "draw_text", "text_width"]
 
 # The stroke font of OpenCV 4 knows ASCII only.
 _ASCII = str.maketrans({"·": "-", "\u2013": "-", "\u00d7": "x", "²": "2"})
@@ -65,6 +65,15 @@ def text_width(text: str, size: float, bold: bool = False) -> int:
     scale, thickness = _strokes(size, bold)
     (width, _), _ = cv2.getTextSize(text.translate(_ASCII), cv2.FONT_HERSHEY_SIMPLEX, scale, thickness)
     return int(width)
+
+
+def cut_text(text: str, width: float, size: float, bold: bool = False) -> str:
+    """Return a line of text, cut so that it is no wider than some pixels."""
+    if text_width(text, size, bold) <= width:
+        return text
+    while text and text_width(text + "...", size, bold) > width:
+        text = text[:-1]
+    return text + "..."
 
 
 @cache

@@ -10,16 +10,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomsim.drawing.surface import Align
+from geomsim.drawing.theme import DrawingError
 from geomsim.drawing.viewport import Box
 from geomsim.files import replacing
+from maps import nearest
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
 
-__all__ = ["VectorSheet"]
+__all__ = ["VectorSheet", "is_vector"]
 
 _INCHES = 7.0  # the width of two columns of a paper
 _POINTS = 72.0 * _INCHES
+
+
+def is_vector(path: Path) -> bool:
+    """Tell by its name whether a picture is written as vectors or as PNG.
+
+    Raises
+    ------
+    DrawingError
+        If it can be neither.
+    """
+    kinds = {".png": False, ".svg": True, ".pdf": True}
+    kind = path.suffix.lower()
+    if kind not in kinds:
+        raise DrawingError(f"A picture cannot be written as {path.name!r}: {nearest(path.suffix, kinds)}")
+    return kinds[kind]
 
 
 class VectorSheet:

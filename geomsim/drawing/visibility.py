@@ -9,7 +9,7 @@ from maps import FloorPlan
 __all__ = ["Walls"]
 
 # Rays at least this close, so that a circle of sight looks round.
-_ARC_STEP = np.radians(4.0)
+_ARC_STEP = np.radians(2.0)
 
 _ALL_AROUND = 2 * np.pi - 1e-9
 
@@ -56,7 +56,7 @@ class Walls:
         Returns
         -------
         ndarray, shape (k, 2)
-            Corners counterclockwise; a circle of sight has one every four degrees at least.
+            Corners counterclockwise; a circle of sight has one every two degrees at least.
         """
         limit = min(reach, self._reach)
         distance = self._normal @ eye - self._offset

@@ -231,3 +231,18 @@ def test_the_cells_picture_shows_cells_apart_and_repairs_in_red(cells: CellMap, 
     assert (changed[..., 2] > -60).all()  # red does not
     path = write_cells_picture(cells, tmp_path / "c.png", width=800)
     assert np.array_equal(cv2.imread(str(path)), plain)
+
+
+@pytest.mark.parametrize("kind", ["svg", "pdf"])
+def test_the_cells_picture_as_vectors(cells: CellMap, tmp_path: Path, kind: str) -> None:
+    first, second = (write_cells_picture(cells, tmp_path / f"{k}.{kind}").read_bytes() for k in (1, 2))
+    assert first == second
+    assert (b"<svg" if kind == "svg" else b"%PDF") in first
+
+
+@pytest.mark.parametrize("write", [write_cells_picture, write_snapshots], ids=["cells", "snapshots"])
+def test_a_kind_of_picture_that_is_none_is_a_sentence(
+    cells: CellMap, episode: Episode, tmp_path: Path, write: object
+) -> None:
+    with pytest.raises(GeomsimError, match=r"'a\.jpg'.*'\.png'"):
+        write(cells if write is write_cells_picture else episode, tmp_path / "a.jpg")

@@ -62,10 +62,10 @@ def test_without_the_belief_layer_all_cells_look_alike(episode: Episode) -> None
     assert np.array_equal(pixel_at(drawer, image, (0.5, 5.5)), pixel_at(drawer, image, (9.7, -3.5)))
 
 
-@pytest.mark.parametrize("layer", ["sight", "plans", "trails", "belief"])
+@pytest.mark.parametrize("layer", ["sight", "plans", "trails", "belief", "numbers"])
 def test_each_layer_changes_the_picture(episode: Episode, layer: str) -> None:
-    full = draw_frame(episode, 4.0)
-    without = draw_frame(episode, 4.0, dataclasses.replace(FrameStyle(), **{layer: False}))
+    full = draw_frame(episode, 4.0, FrameStyle(numbers=True))
+    without = draw_frame(episode, 4.0, dataclasses.replace(FrameStyle(numbers=True), **{layer: False}))
     assert not np.array_equal(full, without)
 
 

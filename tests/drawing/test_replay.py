@@ -228,6 +228,20 @@ def test_a_cell_tells_its_chance(opened: Opened, episode: Episode) -> None:
     assert opened.page.locator("#tip").is_hidden()
 
 
+def test_a_touch_tells_it_too(browser: Any, episode: Episode, tmp_path: Path) -> None:
+    path = write_replay(episode, tmp_path / "replay.html")
+    context = browser.new_context(viewport={"width": 390, "height": 780}, has_touch=True, is_mobile=True)
+    page = context.new_page()
+    page.goto(path.as_uri())
+    page.wait_for_selector("html[data-ready]")
+    x, y = page.evaluate("player.scene.pixel([100, 500]).map((v) => v / devicePixelRatio)")
+    box = page.locator("#floor").bounding_box()
+    page.touchscreen.tap(box["x"] + x, box["y"] + y)
+    page.wait_for_selector("#tip:not([hidden])")
+    assert page.inner_text("#tip").startswith("cell 1:")
+    context.close()
+
+
 def test_the_table_lists_the_most_probable_cells(opened: Opened) -> None:
     opened.page.keyboard.press("End")
     opened.page.click("#table summary")

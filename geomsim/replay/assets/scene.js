@@ -92,7 +92,10 @@ class Scene {
     this.wallLines(context);
     for (const portal of this.episode.data.portals) this.disc(context, this.pixel(portal), 1.7 * unit, theme.portal);
     if (numbers) {
-      this.episode.data.cells.forEach((cell, k) => this.text(context, `${k + 1}`, this.pixel(cell.at), 11, theme.text));
+      this.episode.data.cells.forEach((cell, k) => {
+        const dark = belief && this.episode.share(step, k) > 0.3 * this.episode.data.top;
+        this.text(context, `${k + 1}`, this.pixel(cell.at), 11 * (this.fine / this.unit), dark ? theme.page : theme.text);
+      });
     }
   }
 
@@ -139,7 +142,7 @@ class Scene {
       this.wallLines(context); // they lie above what is seen
     }
     if (layers.trails) for (const r of team) this.trail(context, episode.trail(r, where, t, 20), colour(r));
-    if (layers.plans && !captured) for (const r of team) this.plan(context, episode.route(r, where, t), colour(r));
+    if (layers.plans && !captured) for (const r of team) this.plan(context, episode.route(r, where, t), r, colour(r));
     const evader = episode.evader(where);
     if (captured && data.outcome.robot) {
       this.polyline(context, [episode.position(data.outcome.robot - 1, where), evader]);
@@ -181,9 +184,11 @@ class Scene {
     }
   }
 
-  plan(context, points, colour) {
+  // Ways that robots share are drawn side by side.
+  plan(context, points, robot, colour) {
     if (points.length < 2) return;
-    const { unit } = this;
+    const { unit } = this, others = this.episode.data.robots - 1;
+    const aside = (robot - others / 2) * Math.min(3, 9 / Math.max(others, 1)) * unit;
     let left = 0;
     for (let k = 1; k < points.length; k++) left += this.scale * Math.hypot(points[k][0] - points[k - 1][0], points[k][1] - points[k - 1][1]);
     context.save();
@@ -192,10 +197,11 @@ class Scene {
     context.lineWidth = 1.8 * unit;
     context.setLineDash([7 * unit, 5 * unit]);
     context.lineDashOffset = -left; // dashes stand still while the robot moves
+    context.translate(aside, aside);
     this.polyline(context, points);
     context.stroke();
     context.restore();
-    const end = this.pixel(points[points.length - 1]);
+    const end = this.pixel(points[points.length - 1]).map((v) => v + aside);
     this.disc(context, end, 4.5 * unit, colour);
     this.disc(context, end, 2.6 * unit, this.theme.casing);
   }

@@ -28,7 +28,7 @@ class Walls {
       const foot = Math.atan2(-ny, -nx), half = Math.acos(distance / limit);
       if (limit < this.reach) angles.push(wrapped(foot - half), wrapped(foot + half));
     }
-    for (let a = -Math.PI; a < Math.PI; a += Math.PI / 45) angles.push(a);
+    for (let a = -Math.PI; a < Math.PI; a += Math.PI / 90) angles.push(a);
     const whole = field > turn - 1e-9;
     if (!whole) angles.push(wrapped(heading - field / 2), wrapped(heading + field / 2));
     const rays = Float64Array.from(new Set(angles)).sort();
