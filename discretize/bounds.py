@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from discretize.cellmap import CellMap
 from discretize.exact import exact_cells
+from discretize.mesh import turns_left
 from discretize.sight import Sight
-from discretize.triangulation import Triangulation, door_edges, triangulate, turns_left
+from discretize.triangulation import Triangulation, door_edges, triangulate
 from maps import FloorPlan
 
 __all__ = ["Certificate", "certify", "hidden_set", "mutual_sight", "reflex_bound"]

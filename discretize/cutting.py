@@ -44,7 +44,8 @@ def convex_cells(plan: FloorPlan, *, method: str = "exact", radius: float = 0.2)
     if not (isfinite(radius) and radius > 0):
         raise DiscretizeError(f"The radius of a body must be a positive length in metres, not {radius!r}.")
     ways = ways_of(plan.space, radius)
-    cells, names = number_cells(split_bottlenecks(METHODS[method].cut(plan), ways.tight), plan.labels)
+    way = METHODS[method]
+    cells, names = number_cells(split_bottlenecks(way.cut(plan), ways.tight, way.convexity), plan.labels)
     return connect_cells(plan, cells, names, ways, method)
 
 

@@ -9,7 +9,8 @@ from math import hypot
 
 import shapely
 
-from discretize.triangulation import Triangulation, Vertex, orientation, triangulate, turns_left
+from discretize.mesh import Vertex, orientation, turns_left
+from discretize.triangulation import Triangulation, triangulate
 from maps import FloorPlan
 
 __all__ = ["exact_cells"]

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import shapely
 
 from discretize.exact import exact_cells
+from discretize.implicants import CONVEXITY
+from discretize.quine_mccluskey import quine_mccluskey_cells
 from discretize.visibility import visibility_cells
 from maps import FloorPlan
 
@@ -46,6 +48,13 @@ METHODS: dict[str, Method] = {
             1.0,
             "strictly convex cells: triangles merged while they stay convex; never fails",
             "Hertel and Mehlhorn 1983, on a constrained Delaunay triangulation",
+        ),
+        Method(
+            "quine-mccluskey",
+            quine_mccluskey_cells,
+            CONVEXITY,
+            "nearly convex cells: a minimum cover by maximal unions of pieces of floor, overlaps collapsed",
+            "the paper's suggestion for future work; Quine 1952, McCluskey 1956",
         ),
         Method(
             "visibility",

@@ -16,13 +16,15 @@ NOTHING = 1e-9
 """Lengths below this are rounding: a piece thinner than this lies between two copies of one ray, metres."""
 
 
-def extension_rays(plan: FloorPlan) -> NDArray[np.float64]:
+def extension_rays(plan: FloorPlan, doors: NDArray[np.float64]) -> NDArray[np.float64]:
     """Find the rays that extend walls past reflex corners.
 
     Parameters
     ----------
     plan : FloorPlan
         Free space.
+    doors : ndarray, shape (k, 2, 2)
+        Segments at which rays end as they do at walls, metres.
 
     Returns
     -------
@@ -30,7 +32,8 @@ def extension_rays(plan: FloorPlan) -> NDArray[np.float64]:
         From a reflex corner to the wall that the ray hits, metres.
     """
     corner, before, after = reflex_corners(plan)
-    return shoot(np.concatenate([corner, corner]), np.concatenate([corner - before, corner - after]), plan.walls)
+    walls = np.concatenate([plan.walls, doors])
+    return shoot(np.concatenate([corner, corner]), np.concatenate([corner - before, corner - after]), walls)
 
 
 def reflex_corners(plan: FloorPlan) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

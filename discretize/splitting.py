@@ -14,7 +14,7 @@ _SHORT = 2.02
 """Longest chord, in radii, between two walls through which a body does not pass: its diameter and a hair."""
 
 
-def split_bottlenecks(cells: Sequence[shapely.Polygon], reach: Reach) -> list[shapely.Polygon]:
+def split_bottlenecks(cells: Sequence[shapely.Polygon], reach: Reach, convexity: float) -> list[shapely.Polygon]:
     """Split cells along chords on which the body's centre cannot be, where it can be on both sides.
 
     So the graph joins only what the body can join, and its routes stay in their cells. Convex cells stay convex.
@@ -25,16 +25,18 @@ def split_bottlenecks(cells: Sequence[shapely.Polygon], reach: Reach) -> list[sh
         Simple polygons, metres.
     reach : Reach
         Where the body's centre can be.
+    convexity : float
+        No half may fill less of its convex hull.
     """
     done: list[shapely.Polygon] = []
     todo = list(cells)[::-1]
     while todo:
-        halves = _halves(todo.pop(), reach)
+        halves = _halves(todo.pop(), reach, convexity)
         (done if len(halves) == 1 else todo).extend(halves)
     return done
 
 
-def _halves(cell: shapely.Polygon, reach: Reach) -> list[shapely.Polygon]:
+def _halves(cell: shapely.Polygon, reach: Reach, convexity: float) -> list[shapely.Polygon]:
     """Both sides of the shortest chord that parts the body's places in a cell, or the cell itself."""
     xy = shapely.get_coordinates(cell)[:-1]
     chords = sorted(_chords(xy, _SHORT * reach.radius), key=lambda chord: chord[0])
@@ -46,6 +48,7 @@ def _halves(cell: shapely.Polygon, reach: Reach) -> list[shapely.Polygon]:
         k = (j - i) % len(xy)
         halves = [shapely.Polygon([*turn[: k + 1], end]), shapely.Polygon([turn[0], end, *turn[k + 1 :]])]
         whole = all(half.is_valid for half in halves) and abs(sum(half.area for half in halves) - cell.area) < 1e-9
+        whole = whole and all(half.area >= (convexity - 1e-12) * half.convex_hull.area for half in halves)
         parted = len({halves[0].contains(point) for point in inside}) == 2
         if whole and parted and not shapely.intersects(reach.area, shapely.LineString([turn[0], end])):
             return halves

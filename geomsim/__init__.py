@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from geomsim.scenario import Scenario, read_scenario
     from geomsim.sensing import Sensor
     from geomsim.team import Evader, Team
+    from geomsim.trials import Trials, run_trials
     from maps import FloorPlan, GeomsimError
     from maps import read_plan as load_plan
     from planners import Decoupled, Random, SearchGraph, Stationary
@@ -51,11 +52,13 @@ __all__ = [
     "Still",
     "Team",
     "Timing",
+    "Trials",
     "check_cells",
     "convex_cells",
     "load_plan",
     "read_scenario",
     "run_episode",
+    "run_trials",
 ]
 
 # Where each public name lives: it is imported when first asked for, so that `import geomsim` costs next to nothing.
@@ -69,6 +72,7 @@ _HOMES = {
     "geomsim.scenario": ("Scenario", "read_scenario"),
     "geomsim.sensing": ("Sensor",),
     "geomsim.team": ("Evader", "Team"),
+    "geomsim.trials": ("Trials", "run_trials"),
 }
 
 

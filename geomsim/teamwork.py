@@ -171,7 +171,7 @@ class Teamwork:
                     f"The policy of {type(self.team.planner).__name__} sent pursuer {i + 1} from cell {here + 1} to "
                     "no neighbour of it; run planners.check_policy on it."
                 )
-            plans[i] = tuple(decision.path)
-            self.choices.append(Choice(time, run, i, plans[i]))
+            self.choices.append(Choice(time, run, i, tuple(decision.path)))
+            plans[i] = tuple(decision.path[1:])  # the first hop is under way
             to = decision.path[0]
             walkers.take(k, self.routes.stay(here, self._stay) if to == here else self.routes.between(here, to))

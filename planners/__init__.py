@@ -1,25 +1,41 @@
 """Belief, motion and capture models, cost heuristics, path search, coordination."""
 
 from planners.baselines import Random, Stationary
+from planners.beam import Beam
 from planners.belief import advance, point_belief, uniform_belief
 from planners.capture import CaptureError, CaptureModel, SameCell
 from planners.conformance import ConformanceError, check_policy
 from planners.costs import COSTS, Cost, CostError, Hops, find_cost
+from planners.coupled import Coupled
 from planners.edgelist import read_edge_list, unit_problem
 from planners.evaluation import Prediction, lower_bounds, predict
+from planners.evidence import (
+    EvidenceError,
+    elsewhere,
+    measured_range,
+    merge_evaders,
+    observe,
+    region_belief,
+    reported_sighting,
+)
 from planners.graph import GraphError, SearchGraph
-from planners.lookahead import Decoupled, PlannerError
+from planners.horizon import BestResponse, BranchAndBound, Sequential
+from planners.lookahead import Decoupled
 from planners.motion import (
     AreaSpeedDegree,
+    DwellTime,
+    GivenMotion,
     MotionError,
     MotionModel,
     StationaryMotion,
     UniformMotion,
     check_transition,
+    fit_motion,
 )
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
 from planners.registry import PLANNERS, PlannerEntry, make_planner
-from planners.team import Beam
+from planners.rollout import Rollout
+from planners.team import PlannerError
 from planners.walks import TooLargeError
 
 __all__ = [
@@ -27,13 +43,19 @@ __all__ = [
     "PLANNERS",
     "AreaSpeedDegree",
     "Beam",
+    "BestResponse",
+    "BranchAndBound",
     "CaptureError",
     "CaptureModel",
     "ConformanceError",
     "Cost",
     "CostError",
+    "Coupled",
     "Decision",
     "Decoupled",
+    "DwellTime",
+    "EvidenceError",
+    "GivenMotion",
     "GraphError",
     "Hops",
     "MotionError",
@@ -45,10 +67,12 @@ __all__ = [
     "Prediction",
     "PursuerState",
     "Random",
+    "Rollout",
     "SameCell",
     "SearchGraph",
     "SearchProblem",
     "SearchState",
+    "Sequential",
     "Stationary",
     "StationaryMotion",
     "TooLargeError",
@@ -56,12 +80,19 @@ __all__ = [
     "advance",
     "check_policy",
     "check_transition",
+    "elsewhere",
     "find_cost",
+    "fit_motion",
     "lower_bounds",
     "make_planner",
+    "measured_range",
+    "merge_evaders",
+    "observe",
     "point_belief",
     "predict",
     "read_edge_list",
+    "region_belief",
+    "reported_sighting",
     "uniform_belief",
     "unit_problem",
 ]

@@ -8,12 +8,58 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planners.policy import SearchProblem
 from planners.simulation import SearchModel
+from planners.team import TeamPolicy, at_least
 
-__all__ = ["BeamSearch", "TeamPlan"]
+__all__ = ["Beam", "BeamSearch", "TeamPlan"]
 
 # Values closer than this share are equal: the same plan with the roles of two pursuers changed.
 TIE = 1e-12
+
+# Weight of the way to what is left, chosen by measurement between 0 (no guidance) and 1 (too much of it).
+GUIDE = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class Beam:
+    """The team plans jointly, for a long time ahead, to be expected to capture as soon as possible.
+
+    What is minimised is the mission's own aim, the expected time to capture: the sum over time of the probability
+    of no capture, which does not favour short hops as a sum over hops does. The search is a beam search, see
+    :class:`BeamSearch`. The team keeps to its plan for ``patience`` steps, or until the belief is not what the plan
+    foresaw, and then searches anew; the plan that it has announced competes.
+
+    Attributes
+    ----------
+    width : int
+        Plans that are pursued at a time; more is better and proportionally slower.
+    horizon : int
+        Longest time to plan for, belief steps.
+    patience : int
+        Time between two searches, belief steps.
+    alike : int
+        Plans of the same joint position that are pursued at a time.
+
+    Raises
+    ------
+    PlannerError
+        If one of them is below 1.
+    """
+
+    width: int = 200
+    horizon: int = 120
+    patience: int = 10
+    alike: int = 1
+
+    def __post_init__(self) -> None:
+        at_least(1, width=self.width, horizon=self.horizon, patience=self.patience, alike=self.alike)
+
+    def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
+        """Prepare a policy; nothing in it is random."""
+        model = SearchModel(problem)
+        search = BeamSearch(model, width=self.width, alike=self.alike, horizon=self.horizon)
+        return TeamPolicy(model, lambda *now: search.run(*now).moves, self.patience)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +117,8 @@ class BeamSearch:
         self.model = model
         self.width, self.alike, self.horizon = width, alike, horizon
         self.discount, self.residue = discount, residue
+        by_speed = {speed: model.reach(model.speeds.index(speed)) for speed in model.speeds}
+        self._reach = [by_speed[speed] for speed in model.speeds]
         # A joint position is told by a sum of one random number for each pursuer's move, times how far it is: so
         # pursuers of the same kind may change places. Nothing else hangs on these numbers.
         kinds = sorted(set(model.speeds))
@@ -176,7 +224,8 @@ class _Beam:
         done = np.where(arrived, 0, done)[parent]
         views = moves.views[move, np.maximum(done, 0)]
         left = self.left[parent] - looks.chance(self.free, views, parent)
-        value = self.spent[parent] + self.weight * (1.0 + self.rate) * left
+        after = (1.0 + self.rate) * left + GUIDE * self._way(pursuer, parent, move, done + 1)
+        value = self.spent[parent] + self.weight * after
         loyal = self._loyal_choice(pursuer, arrived, parent, move)
         kept = self._select(value, self._positions(pursuer, parent, move, done + 1), loyal)
         self.free = self.free[parent[kept]]
@@ -186,6 +235,22 @@ class _Beam:
         self.move[:, pursuer], self.done[:, pursuer] = move[kept], done[kept] + 1
         self.loyal = int(np.flatnonzero(kept == loyal)[0]) if loyal >= 0 else -1
         self.trace.append((pursuer, parent[kept], np.where(done[kept] == 0, move[kept], -1)))
+
+    def _way(
+        self, pursuer: int, parent: NDArray[np.intp], move: NDArray[np.intp], done: NDArray[np.intp]
+    ) -> NDArray[np.float64]:
+        """Return for each choice how many steps what is there now is away from the nearest pursuer, on average."""
+
+        def apart(i: int, move: NDArray[np.intp], done: NDArray[np.intp]) -> NDArray[np.float64]:
+            table = self.model.moves[i]
+            return np.asarray(self.search._reach[i][table.target[move]] + (table.steps[move] - done)[:, np.newaxis])
+
+        others = np.full(self.free.shape, np.inf)
+        for i in range(self.move.shape[1]):
+            if i != pursuer:
+                others = np.minimum(others, apart(i, self.move[:, i], self.done[:, i]))
+        nearest = np.minimum(others[parent], apart(pursuer, move, done))
+        return np.asarray(np.einsum("kn,kn->k", self.free[parent], nearest))
 
     def _loyal_choice(
         self, pursuer: int, arrived: NDArray[np.bool_], parent: NDArray[np.intp], move: NDArray[np.intp]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -12,7 +11,8 @@ from numpy.typing import NDArray
 from planners.baselines import Random, Stationary
 from planners.belief import uniform_belief
 from planners.graph import GraphError, SearchGraph
-from planners.policy import Planner, Policy, SearchProblem, SearchState
+from planners.policy import Planner, Policy, SearchProblem
+from planners.running import run_policy
 from planners.simulation import SearchModel
 from planners.walks import JointChain
 
@@ -169,40 +169,14 @@ def _follow(
     residue: float,
     longest: int,
 ) -> Prediction:
-    """Run a policy in belief steps until the evader is as good as caught."""
-    moves = [model.move(cell, cell) for cell in team]
-    done = [1] * len(team)
-    plans: list[tuple[int, ...]] = [()] * len(team)
-    paths: list[list[int]] = [[] for _ in team]
-    free, curve, spent = belief[1:].copy(), [1.0 - float(belief[0])], []
-    while curve[-1] > residue and len(curve) <= longest:
-        pursuers = tuple(model.pursuer_state(i, move, k) for i, (move, k) in enumerate(zip(moves, done, strict=True)))
-        if any(p.target is None for p in pursuers):
-            told = np.concatenate([[1.0 - free.sum()], free])
-            begun = time.perf_counter()
-            decisions = policy.decide(SearchState((len(curve) - 1) * model.step, told, pursuers, tuple(plans)))
-            spent.append(time.perf_counter() - begun)
-            for i, decision in enumerate(decisions):
-                if decision is not None:
-                    moves[i], done[i] = model.move(pursuers[i].cell, decision.path[0]), 0
-                    plans[i] = decision.path[1:]
-                    paths[i].append(decision.path[0])
-        free = model.disperse(free[np.newaxis])[0]
-        for i, move in enumerate(moves):
-            model.looks.take(free[np.newaxis], model.moves[i].views[move, [done[i]]])
-            done[i] += 1
-        curve.append(float(free.sum()))
-    survival = np.array(curve)
-    expected = float(survival[:-1].sum() + survival[-1] * _rest(survival)) * model.step
-    return Prediction(team, expected, survival, tuple(map(tuple, paths)), float(np.mean(spent)))
-
-
-def _rest(survival: NDArray[np.float64]) -> float:
-    """Return the expected steps from the end of a curve on, if it goes on falling as in its last half."""
-    half = len(survival) // 2
-    fall = float(np.log(survival[half] / survival[-1])) if survival[-1] > 0 else np.inf
-    steps = len(survival) - 1 - half
-    return steps / fall if fall > 0 else float("inf")
+    waits, done = [model.move(cell, cell) for cell in team], [1] * len(team)
+    run = run_policy(model, policy, belief[1:], waits, done, residue=residue, longest=longest)
+    paths = tuple(
+        tuple(int(cell) for cell in table.target[list(moves)])
+        for table, moves in zip(model.moves, run.moves, strict=True)
+    )
+    mean = float(np.mean(run.seconds)) if run.seconds else float("nan")
+    return Prediction(team, run.expected_steps() * model.step, run.survival, paths, mean)
 
 
 def _first_belief(graph: SearchGraph, start: Sequence[int]) -> NDArray[np.float64]:

@@ -8,19 +8,15 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from maps import GeomsimError
 from planners.costs import Cost, Hops, find_cost
 from planners.policy import Decision, PursuerState, SearchProblem, SearchState
 from planners.simulation import SearchModel
+from planners.team import at_least
 
-__all__ = ["Decoupled", "PlannerError"]
+__all__ = ["Decoupled"]
 
 # Costs that differ by less than this share are equal: the order of a sum must not decide between mirror images.
 TIE = 1e-9
-
-
-class PlannerError(GeomsimError):
-    """A planner that does not exist, or a parameter that it cannot take."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +55,7 @@ class Decoupled:
 
     def __post_init__(self) -> None:
         find_cost(self.cost)
-        if self.depth < 1:
-            raise PlannerError(f"The depth of a lookahead must be at least 1; got {self.depth}.")
+        at_least(1, depth=self.depth)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> DecoupledPolicy:
         """Prepare a policy; ``rng`` decides between paths of equal cost."""

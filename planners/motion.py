@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from maps import GeomsimError
 from planners.graph import SearchGraph
@@ -16,7 +17,17 @@ if TYPE_CHECKING:
 
     Sparse: TypeAlias = csr_array[Any, tuple[int, int]]
 
-__all__ = ["AreaSpeedDegree", "MotionError", "MotionModel", "StationaryMotion", "UniformMotion", "check_transition"]
+__all__ = [
+    "AreaSpeedDegree",
+    "DwellTime",
+    "GivenMotion",
+    "MotionError",
+    "MotionModel",
+    "StationaryMotion",
+    "UniformMotion",
+    "check_transition",
+    "fit_motion",
+]
 
 
 class MotionError(GeomsimError):
@@ -89,8 +100,7 @@ class AreaSpeedDegree:
     speed: float = 1.0
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.speed) and self.speed > 0):
-            raise MotionError(f"The evader's speed must be a number above 0; got {self.speed}.")
+        _check_speed(self.speed)
 
     def matrix(self, graph: SearchGraph, time_step: float) -> Sparse:
         """Return P for a step of any length above 0, seconds."""
@@ -101,12 +111,125 @@ class AreaSpeedDegree:
 
 
 @dataclass(frozen=True, slots=True)
+class DwellTime:
+    """Leave each cell after the time that an evader between checkpoints and portals takes on average.
+
+    An evader that walks from portal to checkpoint to portal (Section V-A), each portal of the cell as likely as
+    another, comes in by every portal equally often too, since it goes over each edge as often in one direction as in
+    the other. So it dwells for ``tau = 2 * mean(leg) / speed``, with the ways ``leg`` from the cell's checkpoint to
+    its portals; and::
+
+        P[i, i] = 1 - min(1, time_step / tau_i),    P[i, j] = (1 - P[i, i]) / k_i
+
+    so that a memoryless evader dwells as long on average. It changes cell at most once in a step.
+
+    Attributes
+    ----------
+    speed : float
+        Speed of the evader, metres a second; above 0.
+
+    Raises
+    ------
+    MotionError
+        If the speed is not a number above 0.
+    """
+
+    speed: float = 1.0
+
+    def __post_init__(self) -> None:
+        _check_speed(self.speed)
+
+    def matrix(self, graph: SearchGraph, time_step: float) -> Sparse:
+        """Return P for a step of any length above 0, seconds."""
+        degree = graph.degree
+        cell = np.repeat(np.arange(len(graph)), degree)
+        legs = np.bincount(cell, weights=graph.leave, minlength=len(graph))
+        mean = legs / np.maximum(degree, 1)
+        leave = np.minimum(1.0, time_step * self.speed / np.maximum(2.0 * mean, 1e-9))
+        leave = np.where(degree == 0, 0.0, leave).astype(np.float64)
+        move = np.asarray(leave / np.maximum(degree, 1), dtype=np.float64)
+        return _dispersion(graph, np.asarray(1.0 - leave, dtype=np.float64), move)
+
+
+@dataclass(frozen=True, slots=True)
+class GivenMotion:
+    """A transition matrix of the user's own, or one fitted by :func:`fit_motion`.
+
+    Attributes
+    ----------
+    transition : csr_array, shape (N + 1, N + 1)
+        As :func:`check_transition` wants it.
+    time_step : float
+        The step for which it holds, seconds.
+    """
+
+    transition: Sparse
+    time_step: float = 1.0
+
+    def matrix(self, graph: SearchGraph, time_step: float) -> Sparse:
+        """Return the matrix; MotionError if it is none for this graph, or holds for another step."""
+        if not np.isclose(time_step, self.time_step):
+            raise MotionError(f"The transition matrix is for steps of {self.time_step} s; asked for {time_step} s.")
+        check_transition(self.transition, graph)
+        return self.transition
+
+
+def fit_motion(
+    graph: SearchGraph, trajectories: Iterable[ArrayLike], time_step: float = 1.0, prior: float = 1.0
+) -> GivenMotion:
+    """Fit a transition matrix to cells in which evaders were observed.
+
+    The estimate is ``(count[i, j] + prior * U[i, j]) / (count[i] + prior)`` with U the matrix of uniform motion: the
+    mean of the posterior under a Dirichlet prior, so that a cell nobody was seen in falls back to uniform motion.
+
+    Parameters
+    ----------
+    graph : SearchGraph
+        The cells.
+    trajectories : iterable of array_like of int, each of shape (T,)
+        Cells, counted from 0, one for every time step.
+    time_step : float
+        Time between two observations, seconds.
+    prior : float
+        How many observations the prior is worth; above 0.
+
+    Raises
+    ------
+    MotionError
+        If a trajectory names a cell that does not exist, or leaps between cells that are not neighbours, or the prior
+        is not above 0.
+    """
+    from scipy.sparse import coo_array
+
+    if not prior > 0:
+        raise MotionError(f"The prior of a fitted motion must be worth more than 0 observations; got {prior}.")
+    n = len(graph)
+    pairs = []
+    for k, cells in enumerate(np.asarray(t, dtype=np.intp) for t in trajectories):
+        for cell in cells[(cells < 0) | (cells >= n)][:1]:
+            raise MotionError(f"Trajectory {k} names cell {cell + 1}; cells are numbered from 1 to {n}.")
+        pairs.append(np.stack([cells[:-1], cells[1:]]))
+    i, j = np.concatenate([np.empty((2, 0), dtype=np.intp), *pairs], axis=1) + 1
+    counted = coo_array((np.ones(len(i)), (i, j)), shape=(n + 1, n + 1)).tocsr()
+    counted = counted + prior * UniformMotion().matrix(graph, time_step)
+    total = np.asarray(counted.sum(axis=1)).ravel()
+    counted.data /= np.repeat(total, np.diff(counted.indptr))
+    check_transition(counted, graph)
+    return GivenMotion(counted, time_step)
+
+
+@dataclass(frozen=True, slots=True)
 class StationaryMotion:
     """Stay for ever: the identity as dispersion matrix (Section V, last paragraph)."""
 
     def matrix(self, graph: SearchGraph, time_step: float) -> Sparse:  # noqa: ARG002  (the same for every step)
         """Return the identity."""
         return _dispersion(graph, np.ones(len(graph)), np.zeros(len(graph)))
+
+
+def _check_speed(speed: float) -> None:
+    if not (np.isfinite(speed) and speed > 0):
+        raise MotionError(f"The evader's speed must be a number above 0; got {speed}.")
 
 
 def _dispersion(graph: SearchGraph, stay: NDArray[np.float64], move: NDArray[np.float64]) -> Sparse:

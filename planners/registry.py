@@ -9,9 +9,13 @@ from typing import Any
 
 from maps import nearest
 from planners.baselines import Random, Stationary
-from planners.lookahead import Decoupled, PlannerError
+from planners.beam import Beam
+from planners.coupled import Coupled
+from planners.horizon import BestResponse, BranchAndBound, Sequential
+from planners.lookahead import Decoupled
 from planners.policy import Planner
-from planners.team import Beam
+from planners.rollout import Rollout
+from planners.team import PlannerError
 
 __all__ = ["PLANNERS", "PlannerEntry", "make_planner"]
 
@@ -55,10 +59,40 @@ PLANNERS: Mapping[str, PlannerEntry] = _table(
         "the paper, Algorithm 1 and Section IV-E",
     ),
     PlannerEntry(
+        "coupled",
+        Coupled,
+        "the team searches all its joint paths to a depth",
+        "the paper, Algorithm 1 and Section IV-D",
+    ),
+    PlannerEntry(
+        "rollout",
+        Rollout,
+        "runs several planners to the end in the cell model and follows the best, never worse than any of them",
+        "Bertsekas, Castanon: Rollout algorithms for stochastic scheduling problems, 1999",
+    ),
+    PlannerEntry(
         "beam",
         Beam,
         "the team plans jointly for a long time ahead, by beam search on its expected time to capture",
         "after the paper; judged against sequential allocation and branch and bound in the benchmark",
+    ),
+    PlannerEntry(
+        "sequential",
+        Sequential,
+        "one robot after another takes its best path over a fixed time",
+        "Hollinger, Singh, Djugash, Kehagias: Efficient multi-robot search for a moving target, 2009",
+    ),
+    PlannerEntry(
+        "best-response",
+        BestResponse,
+        "sequential allocation, then each robot answers the others' paths until nobody can improve",
+        "coordinate ascent on the same aim",
+    ),
+    PlannerEntry(
+        "branch-and-bound",
+        BranchAndBound,
+        "the best joint plan over a fixed time, with a proof or a proven gap",
+        "after the MEAN bound of the optimal searcher path problem: Martins 1993; Lau, Huang, Dissanayake 2008",
     ),
     PlannerEntry("random", Random, "each robot goes to a random neighbouring cell", "the paper, Section V-A"),
     PlannerEntry("stationary", Stationary, "each robot stays in its starting cell", "the paper, Section V-A"),

@@ -128,11 +128,38 @@ class SearchModel:
         """
         return np.ascontiguousarray((self._transposed @ beliefs.T).T)
 
+    def reach(self, pursuer: int) -> NDArray[np.float64]:
+        """Return how many steps a pursuer at each checkpoint is away from a checkpoint that sees each state.
+
+        Returns
+        -------
+        ndarray, shape (C, N)
+            Belief steps; states that it can never see from a checkpoint are as far as the farthest that it can.
+        """
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import dijkstra
+
+        moves, cells = self.moves[pursuer], len(self.graph)
+        tail = np.repeat(np.arange(cells), self.graph.degree)
+        steps: NDArray[np.float64] = np.delete(moves.steps, moves.start[:-1]).astype(np.float64)
+        apart = dijkstra(coo_array((steps, (tail, self.graph.indices)), shape=(cells, cells)))
+        seen = self.looks.table[:cells].tocoo()
+        nearest = np.full((self.states, cells), np.inf)
+        np.minimum.at(nearest, seen.coords[1], apart[seen.coords[0]])
+        finite = np.isfinite(nearest)
+        return np.ascontiguousarray(np.where(finite, nearest, nearest[finite].max(initial=0.0)).T)
+
     def move(self, cell: int, target: int) -> int:
         """Return the move from a cell to a neighbour, or the wait in the cell; GraphError where there is none."""
         if cell == target:
             return int(self.graph.indptr[cell]) + cell
         return self.graph.edge(cell, target) + cell + 1
+
+    def length_of(self, moves: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Return the way that each move goes, metres; 0 for a wait."""
+        cell = np.searchsorted(self.moves[0].start, moves, side="right") - 1
+        wait = moves == self.moves[0].start[cell]
+        return np.where(wait, 0.0, np.append(self.graph.length, 0.0)[moves - cell - 1])
 
     def under_way(self, pursuer: int, state: PursuerState) -> tuple[int, int]:
         """Return the move that a pursuer is on and how many of its steps are done.
@@ -173,6 +200,16 @@ class SearchModel:
         ahead = np.arange(done, max(int(moves.steps[move]), done + 1))
         looks: NDArray[np.intp] = moves.views[move, np.clip(ahead, 0, moves.steps[move] - 1)]
         return looks
+
+    def views_along(self, pursuer: int, move: int, done: int, plan: Sequence[int], steps: int) -> NDArray[np.intp]:
+        """Return where a pursuer looks from after each of the next steps, for which its plan must last; shape (T,)."""
+        table = self.moves[pursuer]
+        views: list[int] = []
+        for m, begin in [(move, done), *((m, 0) for m in plan)]:
+            views += table.views[m, np.maximum(np.arange(begin, table.steps[m]), 0)].tolist()
+            if len(views) >= steps:
+                break
+        return np.array(views[:steps], dtype=np.intp)
 
     def unseen(self, timelines: list[NDArray[np.intp]]) -> NDArray[np.float64]:
         """Return the share of each state that several pursuers leave unseen at each step to come.

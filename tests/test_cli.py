@@ -15,7 +15,7 @@ import pytest
 
 from geomsim import Episode
 from geomsim.cli import main
-from geomsim.cli.flags import ScenarioFlags
+from geomsim.cli.flags import PlanFlags, ScenarioFlags
 from geomsim.scenario import Scenario
 from planners import Decoupled
 
@@ -70,7 +70,7 @@ def test_run_house(call) -> None:
     assert (told["cells"], told["seed"]) == (9, 3)
     assert told["scenario"]["plan"] == "house"
     files = {kind: Path(path) for kind, path in told["files"].items()}
-    assert set(files) == {"scenario", "record", "snapshots", "video", "frames"}
+    assert set(files) == {"scenario", "record", "snapshots", "replay", "video", "frames"}
     episode = Episode.load(files["record"])
     assert episode.outcome.time == told["capture_time"]
     assert cv2.imread(str(files["snapshots"])).std() > 10
@@ -83,7 +83,17 @@ def test_run_house(call) -> None:
     assert cv2.imread(str(pictures[-1])).shape == (720, 1280, 3)
     assert not list(files["record"].parent.rglob("*part*"))
 
-    again = call("run", "--scenario", files["scenario"], "--json", "--no-video", "--no-snapshots", "--out", "again")
+    again = call(
+        "run",
+        "--scenario",
+        files["scenario"],
+        "--json",
+        "--no-video",
+        "--no-snapshots",
+        "--no-replay",
+        "--out",
+        "again",
+    )
     told_again = json.loads(again[1])
     for key in ("capture_time", "captured_by", "capture_position", "predicted_capture_probability", "scenario"):
         assert told_again[key] == told[key]
@@ -100,7 +110,7 @@ def test_run_tells_a_person(call) -> None:
 
 def test_render_draws_the_same_again(call) -> None:
     call("run", "house", "--no-video", "--out", "run")
-    code, out, _ = call("render", "run/episode.npz", "--no-video", "--out", "again", "--json")
+    code, out, _ = call("render", "run/episode.npz", "--no-video", "--no-replay", "--out", "again", "--json")
     assert code == 0
     assert json.loads(out)["files"] == {"snapshots": "again/snapshots.png"}
     assert Path("again/snapshots.png").read_bytes() == Path("run/snapshots.png").read_bytes()
@@ -182,6 +192,18 @@ def test_listings(call, command: str) -> None:
         (["discretize", "offise"], "office"),
         (["discretize"], "plan"),
         (["render", "none.npz"], "none.npz"),
+        (["run", "house", "--video-format", "avi"], "--video-format is not 'avi'"),
+        (["run", "house", "--snapshots-format", "gif"], "--snapshots-format is not 'gif'"),
+        (["run", "house", "--theme", "dimmed"], "dimmed"),
+        (["run", "house", "--size", "1280"], "--size takes width and height"),
+        (["run", "house", "--size", "99999x2"], "at most 8192"),
+        (["run", "house", "--size", "8x8"], "too small"),
+        (["run", "house", "--times", "0,soon"], "--times takes seconds"),
+        (["run", "house", "--fps", "0"], "--fps must be above 0"),
+        (["run", "house", "--speedup", "nan"], "--speedup must be above 0"),
+        (["run", "house", "--speedup", "2", "--length", "9"], "give one of them"),
+        (["convert", "house", "house.xyz"], "house.xyz"),
+        (["predict", "house", "--start", "12"], "numbered from 1 to 9"),
         (["dance"], "dance"),
     ],
 )
@@ -321,7 +343,7 @@ def test_interruption_while_the_record_is_written_keeps_it(call, monkeypatch: py
 
 @pytest.mark.parametrize("command", ["discretize", "run"])
 def test_interruption_before_anything_is_done(call, monkeypatch: pytest.MonkeyPatch, command: str) -> None:
-    def interrupted(*_: object) -> None:
+    def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("maps.read_plan", interrupted)
@@ -345,11 +367,18 @@ def test_a_foreign_package_of_our_names_is_refused(tmp_path: Path) -> None:
     assert "geomsim needs its own package 'planners'" in done.stderr
 
 
-@pytest.mark.parametrize("key", [key for key, field in Scenario.model_fields.items() if key != "plan"])
+# what a person must give, or what has no default to tell
+NO_DEFAULT = {"plan", "resolution", "units", "options"}
+
+
+@pytest.mark.parametrize("key", [key for key in Scenario.model_fields if key not in NO_DEFAULT])
 def test_help_tells_defaults(key: str) -> None:
-    doc = " ".join((ScenarioFlags.__doc__ or "").split(f"    {key}\n", 1)[1].split())
+    docs = f"{PlanFlags.__doc__}{ScenarioFlags.__doc__}"
+    doc = " ".join(docs.split(f"    {key}\n", 1)[1].split())
     default = Scenario.model_fields[key].default
     words = {"start": "the plan's own", "range": "without limit", "evader_start": "a random one"}
+    words |= {"level": "the largest", "structure": "if it is plainly a scan"}
+    words |= {"motion_speed": "as fast as it is", "clearance": "the largest radius"}
     words |= {"cost": Decoupled().cost, "depth": str(Decoupled().depth)}
     told = words.get(key, f"{default:g}" if isinstance(default, float) else str(default))
     assert doc[: doc.index("]") + 1].endswith(f" [default: {told}]"), doc

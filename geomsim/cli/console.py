@@ -12,7 +12,7 @@ from typing import Any
 
 from geomsim.files import OutputError
 
-__all__ = ["complain", "finish_stdout", "progress", "say", "say_json", "speak_plainly"]
+__all__ = ["complain", "finish_stdout", "progress", "say", "say_json", "speak_plainly", "tally"]
 
 #: an error sentence longer than this loses its middle: a wrong value may be as long as a file
 _LONGEST = 1000
@@ -93,3 +93,27 @@ def progress(what: str) -> Iterator[Callable[[float, float], None] | None]:
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=None)
         yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+@contextmanager
+def tally() -> Iterator[Callable[[str, int, int], None] | None]:
+    """Show one progress bar with the time left for each of several works, if stderr is a terminal.
+
+    Yields a function of a work's name, what is done of it, and what there is to do; or None in a pipe.
+    """
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    tasks: dict[str, TaskID] = {}
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+
+        def tell(name: str, done: int, total: int) -> None:
+            if name not in tasks:
+                tasks[name] = bar.add_task(name, total=total)
+            bar.update(tasks[name], completed=done)
+
+        yield tell

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
-from cyclopts import Parameter
-
-from geomsim.cli.console import progress, say, say_json
+from geomsim.cli.console import say, say_json
+from geomsim.cli.drawing import DrawFlags
 from geomsim.cli.flags import JsonFlag, OutFlag
 
 __all__ = ["render"]
@@ -16,11 +14,9 @@ __all__ = ["render"]
 def render(
     record: Path,
     *,
-    video: Annotated[bool, Parameter(help="Write a video.")] = True,
-    snapshots: Annotated[bool, Parameter(help="Write a contact sheet of snapshots.")] = True,
-    frames: Annotated[bool, Parameter(negative="", help="Write every frame of the video as PNG.")] = False,
     out: OutFlag = None,
     json: JsonFlag = False,
+    drawing: DrawFlags = DrawFlags(),  # noqa: B008 a frozen value without fields set
 ) -> int:
     """Draw a saved episode again.
 
@@ -32,17 +28,11 @@ def render(
     from geomsim.episode import Episode
     from geomsim.files import output_folder
 
+    drawing.check()
     episode = Episode.load(record)
     folder = output_folder(out or record.parent)
     files: dict[str, Path] = {}
-    if snapshots:
-        files["snapshots"] = episode.save_snapshots(folder / "snapshots.png")
-    if video:
-        with progress("video") as bar:
-            files["video"] = episode.save_video(folder / "pursuit.mp4", progress=bar)
-    if frames:
-        with progress("frames") as bar:
-            files["frames"] = episode.save_frames(folder / "frames", progress=bar)
+    drawing.draw(episode, folder, files)
     if json:
         say_json({"files": {kind: str(path) for kind, path in files.items()}})
     else:

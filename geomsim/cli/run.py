@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from geomsim.cli.console import complain, progress, say, say_json
+from geomsim.cli.drawing import DrawFlags
 from geomsim.cli.flags import JsonFlag, OutFlag, ScenarioFlags
 
 __all__ = ["run"]
@@ -18,13 +19,11 @@ def run(
     *,
     scenario: Annotated[Path | None, Parameter(help="A scenario file (TOML); flags override its keys.")] = None,
     out: OutFlag = None,
-    video: Annotated[bool, Parameter(help="Write a video.")] = True,
-    snapshots: Annotated[bool, Parameter(help="Write a contact sheet of snapshots.")] = True,
-    frames: Annotated[bool, Parameter(negative="", help="Write every frame of the video as PNG.")] = False,
     json: JsonFlag = False,
+    drawing: DrawFlags = DrawFlags(),  # noqa: B008 a frozen value without fields set
     flags: ScenarioFlags = ScenarioFlags(),  # noqa: B008 a frozen value without fields set
 ) -> int:
-    """Run one pursuit and write its record, video and snapshots.
+    """Run one pursuit; write its record, video, snapshots and replay.
 
     Parameters
     ----------
@@ -37,6 +36,7 @@ def run(
     from geomsim.scenario import read_scenario
     from geomsim.team import place_team
 
+    drawing.check()
     told = read_scenario(scenario, flags.given() | ({} if plan is None else {"plan": plan}))
     team, quarry, timing, motion = told.team(), told.quarry(), told.timing(), told.belief_motion()
     place, cells = told.place()
@@ -55,7 +55,7 @@ def run(
                 scenario=told.as_dict(),
                 progress=None if bar is None else lambda time, _: bar(time, told.time_limit),
             )
-        _clear(folder)
+        drawing.clear(folder)
         interrupted = False
         try:
             record = episode.save(folder / "episode.npz")
@@ -71,28 +71,13 @@ def run(
     try:
         if interrupted:
             raise KeyboardInterrupt
-        if snapshots:
-            files["snapshots"] = episode.save_snapshots(folder / "snapshots.png")
-        if video:
-            with progress("video") as bar:
-                files["video"] = episode.save_video(folder / "pursuit.mp4", progress=bar)
-        if frames:
-            with progress("frames") as bar:
-                files["frames"] = episode.save_frames(folder / "frames", progress=bar)
+        drawing.draw(episode, folder, files)
     except KeyboardInterrupt:
         _report(episode, files, json=json)
         complain(f"Interrupted while drawing; what was finished is in {folder}.")
         return 130
     _report(episode, files, json=json)
     return 0
-
-
-def _clear(folder: Path) -> None:
-    """Take away what an earlier run left in the folder, which would pass for this one's."""
-    for name in ("scenario.toml", "episode.npz", "snapshots.png", "pursuit.mp4", "replay.html"):
-        (folder / name).unlink(missing_ok=True)
-    for frame in (folder / "frames").glob("frame_*.png"):
-        frame.unlink()
 
 
 def _count(pursuers: int) -> str:

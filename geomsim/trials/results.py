@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geomsim.trials.experiment import Experiment, Row
+from geomsim.trials.fidelity import Forecast
 from geomsim.trials.statistics import (
     Difference,
     Sample,
@@ -19,7 +19,6 @@ from geomsim.trials.statistics import (
     Times,
     compare_times,
     describe_times,
-    predict,
     survival,
 )
 
@@ -38,14 +37,14 @@ class MethodRun:
         What they took to compute.
     seconds_per_decision : float
         The same for each decision of the planner, the belief and the bodies included.
-    missed : tuple of ndarray
-        For each run the probability, as the team believed, that the evader is free after each belief step.
+    forecast : Forecast or None
+        What the cell model says exactly.
     """
 
     runs: int
     seconds: float
     seconds_per_decision: float
-    missed: tuple[NDArray[np.float64], ...]
+    forecast: Forecast | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +57,9 @@ class MethodSummary:
         Of the method.
     observed : Sample
         What the trials say.
-    predicted : float
-        Mean capture time that the team's own belief predicted, seconds.
-    gap : float
+    predicted : float or None
+        Exact mean capture time in the cell model, seconds; None where that has no finite answer.
+    gap : float or None
         Largest difference between the predicted and the observed share captured, over time.
     difference : Difference or None
         Against the reference; None for the reference itself.
@@ -70,8 +69,8 @@ class MethodSummary:
 
     name: str
     observed: Sample
-    predicted: float
-    gap: float
+    predicted: float | None
+    gap: float | None
     difference: Difference | None
     run: MethodRun
 
@@ -106,12 +105,12 @@ class Summary:
     def __str__(self) -> str:
         width = max(len(method.name) for method in self.methods)
         head = f"{'method':<{width}}  {'mean':>8} {'SEM':>6} {'median':>7} {'captured':>8} {'predicted':>9}"
-        lines = [head + f"  less than {self.reference}, 95 % interval"]
+        lines = [head + f"  against {self.reference}, 95 % interval"]
         for method in self.methods:
             seen, gap = method.observed, method.difference
             mean = f"{'>=' if seen.censored else ''}{seen.mean:.1f}"
             cells = f"{mean:>8} {_told(seen.sem, 2):>6} {_told(seen.median, 1):>7} {seen.captured_share:>8.1%}"
-            line = f"{method.name:<{width}}  {cells} {method.predicted:>9.1f}"
+            line = f"{method.name:<{width}}  {cells} {_told(method.predicted, 1):>9}"
             if gap is not None:
                 line += f"  {gap.difference:+.1f} [{_told(gap.low, 1, '+')}, {_told(gap.high, 1, '+')}]"
             lines.append(line)
@@ -177,11 +176,6 @@ class Trials:
         """Return the Kaplan-Meier curve of a method."""
         return survival(self.times(name))
 
-    def predicted(self, name: str) -> tuple[float, NDArray[np.float64]]:
-        """Return the mean capture time that a method's belief predicted, and the share free after each of its steps."""
-        timing = self.experiment.timing
-        return predict(self.runs[self.names.index(name)].missed, timing.belief_step, timing.limit)
-
     def summary(self) -> Summary:
         """Return the table."""
         return self._summary
@@ -194,13 +188,15 @@ class Trials:
         lines = []
         for name, run in zip(self.names, self.runs, strict=True):
             times = self.times(name)
-            mean, free = self.predicted(name)
+            told = run.forecast
+            gap = None if told is None else told.gap(self.survival(name), self.experiment.timing.limit)
+            predicted = None if told is None else told.mean
             difference = None if name == self.reference else compare_times(times, reference)
-            lines.append(MethodSummary(name, describe_times(times), mean, self._gap(name, free), difference, run))
-        seen, told = ([line.observed.mean for line in lines], [line.predicted for line in lines])
-        tau = None
-        if len(lines) > 1 and len(set(seen)) > 1 and len(set(told)) > 1:
-            tau = float(kendalltau(seen, told).statistic)
+            lines.append(MethodSummary(name, describe_times(times), predicted, gap, difference, run))
+        pairs = [(line.observed.mean, line.predicted) for line in lines if line.predicted is not None]
+        seen, said = np.array(pairs).reshape(-1, 2).T
+        varied = len(pairs) > 1 and np.ptp(seen) > 0 and np.ptp(said) > 0
+        tau = float(kendalltau(seen, said).statistic) if varied else None
         return Summary(tuple(lines), self.reference, self.experiment.trials, self.experiment.timing.limit, tau)
 
     def as_dict(self) -> dict[str, Any]:
@@ -245,13 +241,6 @@ class Trials:
             "scenario": self.experiment.about(),
             "files": {kind: str(path) for kind, path in self.files.items()},
         }
-
-    def _gap(self, name: str, free: NDArray[np.float64]) -> float:
-        curve = self.survival(name)
-        at = np.arange(len(free)) * self.experiment.timing.belief_step
-        at = at[at <= self.experiment.timing.limit]
-        seen = curve.free[np.searchsorted(curve.time, at + 1e-9, side="right") - 1]
-        return float(np.abs(seen - free[: len(at)]).max())
 
 
 def _told(value: float | None, digits: int, sign: str = "") -> str:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Difference", "Sample", "Survival", "Times", "compare_times", "describe_times", "predict", "survival"]
+__all__ = ["Difference", "Sample", "Survival", "Times", "compare_times", "describe_times", "survival"]
 
 _LEVEL = 0.95
 
@@ -150,31 +150,6 @@ def compare_times(times: Times, reference: Times) -> Difference:
     x, y = (CensoredData.right_censored(t.time, ~t.captured) for t in (times, reference))
     differs = (times.captured.any() or reference.captured.any()) and gap.any()
     return Difference(float(gap.mean()), low, high, float(logrank(x, y).pvalue) if differs else None)
-
-
-def predict(missed: tuple[NDArray[np.float64], ...], step: float, limit: float) -> tuple[float, NDArray[np.float64]]:
-    """Return what the belief predicted: the mean capture time and the share still free after each belief step.
-
-    Parameters
-    ----------
-    missed : tuple of ndarray
-        For each run of the team the probability that the evader is free, after each belief step.
-    step : float
-        Of the belief, seconds.
-    limit : float
-        Time limit, seconds, to which the mean is restricted, as the observed one is. Up to it, but beyond the end of
-        a run, the curve is continued at the rate at which it fell over the run's second half.
-    """
-    means = []
-    for curve in missed:
-        area = float(curve[:-1].sum()) * step
-        left, middle = limit - (len(curve) - 1) * step, len(curve) // 2
-        if left > 0 and curve[-1] > 0:
-            fall = float(np.log(curve[middle] / curve[-1])) / max(step, (len(curve) - 1 - middle) * step)
-            area += float(curve[-1]) * (-np.expm1(-fall * left) / fall if fall > 0 else left)
-        means.append(area)
-    shortest = min(len(curve) for curve in missed)
-    return float(np.mean(means)), np.mean([curve[:shortest] for curve in missed], axis=0)
 
 
 def _by_run(values: NDArray[np.float64], runs: int) -> NDArray[np.float64]:

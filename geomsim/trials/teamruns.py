@@ -15,10 +15,7 @@ from geomsim.teamwork import Teamwork
 from geomsim.trials.experiment import Experiment
 from geomsim.trials.walls import WallGrid
 
-__all__ = ["NEARLY_SURE", "TeamRun", "run_team"]
-
-#: a run goes on until the chance that the evader is free, as the team believes, is no more than this
-NEARLY_SURE = 0.01
+__all__ = ["TeamRun", "run_team"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +32,6 @@ class TeamRun:
         Where they looked, radians.
     cells : ndarray of int32, shape (S + 1, P)
         The cells in which they were, counted from 0.
-    missed : ndarray
-        Probability, after each belief step, that the evader is free: one less the belief's capture state.
     drew : bool
         Whether the planner drew random numbers; if not, every run of this team is the same.
     decisions : int
@@ -53,7 +48,6 @@ class TeamRun:
     eyes: NDArray[np.float64]
     headings: NDArray[np.float64]
     cells: NDArray[np.int32]
-    missed: NDArray[np.float64]
     drew: bool
     decisions: int
     seconds: float
@@ -73,12 +67,11 @@ class TeamRun:
             eyes=self.eyes[rows] if sight else nothing,
             headings=self.headings[rows] if sight else nothing,
             cells=self.cells[rows],
-            missed=nothing,
         )
 
 
 def run_team(experiment: Experiment, method: int, runs: Sequence[int], steps: int) -> list[TeamRun]:
-    """Run the team of a method for at least ``steps`` physics steps, within the time limit.
+    """Run the team of a method for some physics steps.
 
     Parameters
     ----------
@@ -89,7 +82,7 @@ def run_team(experiment: Experiment, method: int, runs: Sequence[int], steps: in
     runs : sequence of int
         Numbers of the runs; each draws from a seed of its own.
     steps : int
-        How far. A run goes on until the team is nearly sure of capture, so that its prediction is complete.
+        How far.
     """
     from geomsim.trials.kernels import blocked_moves
 
@@ -102,11 +95,8 @@ def run_team(experiment: Experiment, method: int, runs: Sequence[int], steps: in
         experiment.cells, team, experiment.starts, experiment.motion, believed, timing.belief_step, deciding
     )
     eyes, headings, cells = [work.positions], [work.headings], [work.cells]
-    missed = [1.0 - work.beliefs[:, 0]]
     held_up = work.idle >= HELD_UP
-    for k in range(timing.steps):
-        if k >= steps and missed[-1].max() <= NEARLY_SURE:
-            break
+    for k in range(steps):
         work.step(k * timing.physics_step, timing.physics_step)
         eyes.append(work.positions)
         headings.append(work.headings)
@@ -114,8 +104,7 @@ def run_team(experiment: Experiment, method: int, runs: Sequence[int], steps: in
         held_up |= work.idle >= HELD_UP
         if (k + 1) % timing.steps_per_belief == 0:
             work.learn()
-            missed.append(1.0 - work.beliefs[:, 0])
-    tracks, looks, places, curves = np.array(eyes), np.array(headings), np.array(cells), np.array(missed)
+    tracks, looks, places = np.array(eyes), np.array(headings), np.array(cells)
     chosen = np.bincount([choice.run for choice in work.choices], minlength=len(runs))
     spent = (clock.perf_counter() - begun) / len(runs)
     return [
@@ -124,7 +113,6 @@ def run_team(experiment: Experiment, method: int, runs: Sequence[int], steps: in
             eyes=np.ascontiguousarray(tracks[:, r]),
             headings=np.ascontiguousarray(looks[:, r]),
             cells=np.ascontiguousarray(places[:, r]),
-            missed=curves[:, r],
             drew=deciding[r].bit_generator.state != fresh[r],
             decisions=int(chosen[r]),
             seconds=spent,

@@ -7,14 +7,24 @@ from hypothesis import strategies as st
 
 from planners import (
     AreaSpeedDegree,
+    DwellTime,
+    GivenMotion,
     MotionError,
     SearchGraph,
     StationaryMotion,
     UniformMotion,
     check_transition,
+    fit_motion,
 )
 
-MODELS = [UniformMotion(), AreaSpeedDegree(), AreaSpeedDegree(speed=0.3), StationaryMotion()]
+MODELS = [
+    DwellTime(),
+    DwellTime(speed=4.0),
+    UniformMotion(),
+    AreaSpeedDegree(),
+    AreaSpeedDegree(speed=0.3),
+    StationaryMotion(),
+]
 
 # Section IV-B of the paper, as printed.
 PRINTED = """
@@ -90,3 +100,49 @@ def test_a_wrong_matrix_is_named(house, change, message):
     check_transition(matrix, house)
     with pytest.raises(MotionError, match=message):
         check_transition(change(matrix), house)
+
+
+def test_dwell_time_is_that_of_an_evader_between_checkpoints_and_portals(metric_house):
+    # Walk the legs of the evader itself for long, and compare the mean time of a visit to each cell.
+    rng = np.random.default_rng(0)
+    time, visits = np.zeros(9), np.zeros(9)
+    cell, arrive = 0, None
+    for _ in range(60_000):
+        edge = metric_house.indptr[cell] + rng.integers(metric_house.degree[cell])
+        if arrive is not None:
+            time[cell] += arrive + metric_house.leave[edge]
+            visits[cell] += 1
+        cell, arrive = metric_house.indices[edge], metric_house.arrive[edge]
+    step = 0.05
+    stay = DwellTime().matrix(metric_house, step).diagonal()[1:]
+    np.testing.assert_allclose(step / (1 - stay), time / visits, rtol=0.03)
+
+
+def test_a_fit_finds_the_matrix_that_made_the_trajectories(house):
+    truth = AreaSpeedDegree().matrix(house, 1.0).toarray()[1:, 1:]
+    rng = np.random.default_rng(2)
+    walk = [0]
+    for _ in range(20_000):
+        walk.append(int(rng.choice(9, p=truth[walk[-1]])))
+    fitted = fit_motion(house, [walk[:9_000], walk[9_000:]])
+    np.testing.assert_allclose(fitted.matrix(house, 1.0).toarray()[1:, 1:], truth, atol=0.04)
+
+
+def test_a_fit_to_nothing_is_uniform_motion(house):
+    nothing = fit_motion(house, []).matrix(house, 1.0).toarray()
+    np.testing.assert_allclose(nothing, UniformMotion().matrix(house, 1.0).toarray())
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda g: fit_motion(g, [[0, 9]]), "Trajectory 0 names cell 10; cells are numbered from 1 to 9"),
+        (lambda g: fit_motion(g, [[0, 3], [0, 1]]), "from cell 1 to cell 2, which are not neighbours"),
+        (lambda g: fit_motion(g, [], prior=0.0), "more than 0 observations; got 0.0"),
+        (lambda g: fit_motion(g, []).matrix(g, 0.5), "steps of 1.0 s; asked for 0.5 s"),
+        (lambda g: GivenMotion(np.eye(3)).matrix(g, 1.0), "must be 10 x 10"),
+    ],
+)
+def test_bad_observations_and_matrices_are_named(house, make, message):
+    with pytest.raises(MotionError, match=message):
+        make(house)

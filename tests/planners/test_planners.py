@@ -38,7 +38,8 @@ def problems():
 
 def planners():
     for name, entry in PLANNERS.items():
-        yield pytest.param(entry.make(), id=name)
+        limits = {"horizon": 12} if "horizon" in entry.parameters else {}
+        yield pytest.param(entry.make(**limits), id=name)
         if "cost" in entry.parameters:
             yield from (pytest.param(entry.make(cost=cost), id=f"{name} {cost}") for cost in COSTS)
         if "depth" in entry.parameters:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geomsim.trials.statistics import Times, compare_times, describe_times, predict, survival
+from geomsim.trials.statistics import Times, compare_times, describe_times, survival
 
 # Weeks to relapse of 21 patients with 6-mercaptopurine and 21 with placebo (Freireich and others 1963), the example of
 # Kaplan-Meier and log-rank in most textbooks; False: censored.
@@ -76,14 +76,3 @@ def test_intervals_cover_as_they_say() -> None:
         difference = compare_times(method, times(evader.tolist()))
         covered += difference.low <= 3 <= difference.high
     assert 363 <= covered <= 395
-
-
-def test_prediction() -> None:
-    """An evader that is caught with probability 0.1 a second is free for 10 s on average, seen from any run length."""
-    for seconds in (20, 80, 500):
-        mean, free = predict((0.9 ** np.arange(seconds + 1),), 1.0, 1e6)
-        assert mean == pytest.approx(10.0, rel=0.06)  # the tail is continued in continuous time
-        assert free[3] == pytest.approx(0.729)
-    mean, free = predict((np.ones(31), np.full(31, 0.5)), 1.0, 30.0)
-    assert mean == pytest.approx(22.5)
-    assert free == pytest.approx(np.full(31, 0.75))

@@ -1,0 +1,160 @@
+"""What is learned besides "not seen": priors, measurements, and several evaders at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from maps import GeomsimError
+from planners.belief import uniform_belief
+from planners.graph import SearchGraph
+
+__all__ = [
+    "EvidenceError",
+    "elsewhere",
+    "measured_range",
+    "merge_evaders",
+    "observe",
+    "region_belief",
+    "reported_sighting",
+]
+
+
+class EvidenceError(GeomsimError):
+    """A prior or measurement that cannot be right."""
+
+
+def observe(belief: NDArray[np.float64], likelihood: ArrayLike) -> NDArray[np.float64]:
+    """Return the belief after a measurement: the matrix M of Section IV-B, a diagonal one, and Bayes' rule.
+
+    A measurement of the evader says that it is free, and nothing on how likely it was to be caught before; so the
+    capture state keeps its probability, and what is left is divided anew: ``p_n <- (1 - p_0) p_n L_n / sum_m p_m L_m``.
+
+    Parameters
+    ----------
+    belief : ndarray, shape (N + 1,)
+        Index 0 is the capture state.
+    likelihood : array_like, shape (N,)
+        Probability (density) of what was measured, for an evader in each state.
+
+    Raises
+    ------
+    EvidenceError
+        If the likelihood has another shape or a negative entry, or the belief holds the measurement to be impossible.
+    """
+    chance = np.asarray(likelihood, dtype=np.float64)
+    if chance.shape != (len(belief) - 1,):
+        raise EvidenceError(f"A likelihood must have {len(belief) - 1} entries, one a state; got shape {chance.shape}.")
+    if not (np.isfinite(chance).all() and (chance >= 0).all()):
+        raise EvidenceError("A likelihood must be finite and nowhere below 0.")
+    weighed = belief[1:] * chance
+    total = float(weighed.sum())
+    if total <= 0:
+        raise EvidenceError("The measurement is impossible everywhere the evader may be.")
+    return np.concatenate([[belief[0]], weighed * ((1.0 - belief[0]) / total)])
+
+
+def measured_range(distances: ArrayLike, measured: float, deviation: float) -> NDArray[np.float64]:
+    """Return the likelihood, shape (N,), of a range to the evader with Gaussian noise.
+
+    Parameters
+    ----------
+    distances : array_like, shape (N,)
+        True range for an evader in each state, metres.
+    measured : float
+        What was measured, metres.
+    deviation : float
+        Standard deviation of the noise, metres; above 0. For a state as large as a cell it should include the spread
+        of places in the cell.
+
+    Raises
+    ------
+    EvidenceError
+        If the deviation is not above 0.
+    """
+    if not deviation > 0:
+        raise EvidenceError(f"The deviation of a range must be above 0; got {deviation}.")
+    error = (np.asarray(distances, dtype=np.float64) - measured) / deviation
+    # Divided by the largest value, which cancels in Bayes' rule, so that far outliers do not become 0 everywhere.
+    return np.asarray(np.exp(-0.5 * (error**2 - (error**2).min())))
+
+
+def reported_sighting(states: int, where: Iterable[int], hit: float, false: float) -> NDArray[np.float64]:
+    """Return the likelihood, shape (N,), of a report that the evader was seen in some states.
+
+    Parameters
+    ----------
+    states : int
+        Number N of states.
+    where : iterable of int
+        States that were reported, counted from 0.
+    hit, false : float
+        Probability of such a report if the evader is there, and if it is not.
+
+    Raises
+    ------
+    EvidenceError
+        If a probability is outside [0, 1] or a state does not exist.
+    """
+    if not (0 <= hit <= 1 and 0 <= false <= 1):
+        raise EvidenceError(f"Probabilities of a report must be between 0 and 1; got {hit} and {false}.")
+    likelihood = np.full(states, float(false))
+    for state in where:
+        if not 0 <= state < states:
+            raise EvidenceError(f"There is no state {state + 1}; states are numbered from 1 to {states}.")
+        likelihood[state] = hit
+    return likelihood
+
+
+def elsewhere(states: int, where: Iterable[int]) -> NDArray[np.float64]:
+    """Return the likelihood, shape (N,), of being told that the evader is not in some states, counted from 0."""
+    return reported_sighting(states, where, 0.0, 1.0)
+
+
+def region_belief(graph: SearchGraph, cells: Iterable[int], inside: float = 1.0) -> NDArray[np.float64]:
+    """Return a prior: in some cells with probability ``inside``, anywhere else with the rest; shape (N + 1,).
+
+    It is also the belief after a lost sighting, with the cells that the evader can have got to.
+
+    Raises
+    ------
+    EvidenceError
+        If the probability is outside [0, 1].
+    GraphError
+        If a cell does not exist, or a part that has probability has no cell.
+    """
+    if not 0 <= inside <= 1:
+        raise EvidenceError(f"The probability of a region must be between 0 and 1; got {inside}.")
+    region = set(cells)
+    parts = ((inside, set(range(len(graph))) - region), (1.0 - inside, region))
+    belief = np.zeros(len(graph) + 1)
+    for share, excluded in parts:
+        if share > 0:
+            belief += share * uniform_belief(graph, exclude=excluded)
+    return belief
+
+
+def merge_evaders(beliefs: NDArray[np.float64], free: ArrayLike) -> NDArray[np.float64]:
+    """Return one belief to plan with for several independent evaders, each with a belief of its own.
+
+    It is the mean over those still free. Every aim that is linear in the belief - the expected time to capture, the
+    target probability - then is the mean over evaders of what it is for each; entropy is that of the mixture.
+
+    Parameters
+    ----------
+    beliefs : ndarray, shape (K, N + 1)
+        Belief on each evader.
+    free : array_like of bool, shape (K,)
+        Which evaders are not caught yet; the robots are told who is.
+
+    Raises
+    ------
+    EvidenceError
+        If nobody is free.
+    """
+    mask = np.asarray(free, dtype=bool)
+    if not mask.any():
+        raise EvidenceError("All evaders are caught; there is nobody left to search for.")
+    return np.asarray(beliefs[mask].mean(axis=0))

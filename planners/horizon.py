@@ -1,0 +1,208 @@
+"""Planners over a fixed time: sequential allocation, repeated best response, branch and bound with a proven gap."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from planners.beam import BeamSearch
+from planners.branching import Certificate, JointSearch
+from planners.policy import SearchProblem
+from planners.simulation import SearchModel
+from planners.team import TeamPolicy, at_least
+
+__all__ = ["BestResponse", "BranchAndBound", "Sequential", "respond"]
+
+
+@dataclass(frozen=True, slots=True)
+class Sequential:
+    """One pursuer after another takes its best path over a fixed time, given the paths of those before it.
+
+    Sequential allocation (Hollinger et al. 2009); since what a path adds can only shrink as paths are added, the
+    team gets at least half of what the best joint plan would. Each pursuer's path is the best one, by branch and
+    bound, see :class:`planners.branching.JointSearch`.
+
+    Attributes
+    ----------
+    horizon : int
+        Belief steps to plan for.
+    discount : float
+        Weight of each belief step relative to the one before it.
+    patience : int
+        Time between two searches, belief steps.
+
+    Raises
+    ------
+    PlannerError
+        If a number is below 1, or the discount outside (0, 1].
+    """
+
+    horizon: int = 10
+    discount: float = 1.0
+    patience: int = 1
+
+    def __post_init__(self) -> None:
+        at_least(1, horizon=self.horizon, patience=self.patience)
+        at_least(0, discount=self.discount)
+
+    def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
+        """Prepare a policy; nothing in it is random."""
+        search = JointSearch(SearchModel(problem), horizon=self.horizon, discount=self.discount)
+
+        def allocate(
+            belief: NDArray[np.float64],
+            moves: Sequence[int],
+            done: Sequence[int],
+            announced: Sequence[Sequence[int]],  # noqa: ARG001  (every plan starts from nothing)
+        ) -> Sequence[Sequence[int]]:
+            return respond(search, belief, moves, done, (), rounds=0)
+
+        return TeamPolicy(search.model, allocate, self.patience)
+
+
+@dataclass(frozen=True, slots=True)
+class BestResponse:
+    """Sequential allocation; then each pursuer in turn answers the others' paths with its best one, until none can.
+
+    A pursuer changes its path only for a better one, so that this ends, in a joint plan that no single pursuer can
+    improve; the plan announced before competes.
+
+    Attributes
+    ----------
+    horizon : int
+        Belief steps to plan for.
+    rounds : int
+        Rounds of answers at most.
+    discount : float
+        Weight of each belief step relative to the one before it.
+    patience : int
+        Time between two searches, belief steps.
+
+    Raises
+    ------
+    PlannerError
+        If a number is below 1, or the discount below 0.
+    """
+
+    horizon: int = 10
+    rounds: int = 10
+    discount: float = 1.0
+    patience: int = 1
+
+    def __post_init__(self) -> None:
+        at_least(1, horizon=self.horizon, rounds=self.rounds, patience=self.patience)
+        at_least(0, discount=self.discount)
+
+    def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
+        """Prepare a policy; nothing in it is random."""
+        search = JointSearch(SearchModel(problem), horizon=self.horizon, discount=self.discount)
+        return TeamPolicy(search.model, lambda *now: respond(search, *now, rounds=self.rounds), self.patience)
+
+
+@dataclass(frozen=True, slots=True)
+class BranchAndBound:
+    """The best joint plan over a fixed time, with a proof or a proven gap.
+
+    Starts from the better of beam search and repeated best response, and then searches all joint plans, see
+    :class:`planners.branching.JointSearch`; ended early, it returns the best plan so far and how far from the best
+    it can be at most. The policy keeps the last :class:`planners.branching.Certificate`.
+
+    Attributes
+    ----------
+    horizon : int
+        Belief steps to plan for.
+    nodes : int
+        The proof is given up after this many nodes.
+    seconds : float
+        It is given up after this time; then results depend on the machine.
+    discount : float
+        Weight of each belief step relative to the one before it.
+    patience : int
+        Time between two searches, belief steps.
+
+    Raises
+    ------
+    PlannerError
+        If a number is below 1, or time or discount below 0.
+    """
+
+    horizon: int = 8
+    nodes: int = 20_000
+    seconds: float = float("inf")
+    discount: float = 1.0
+    patience: int = 4
+
+    def __post_init__(self) -> None:
+        at_least(1, horizon=self.horizon, nodes=self.nodes, patience=self.patience)
+        at_least(0, seconds=self.seconds, discount=self.discount)
+
+    def solve(self, problem: SearchProblem, rng: np.random.Generator) -> CertifiedPolicy:  # noqa: ARG002  (no chance)
+        """Prepare a policy; nothing in it is random."""
+        return CertifiedPolicy(SearchModel(problem), self)
+
+
+class CertifiedPolicy(TeamPolicy):
+    """The policy of :class:`BranchAndBound`; ``certificate`` belongs to the last plan, None before the first."""
+
+    def __init__(self, model: SearchModel, planner: BranchAndBound) -> None:
+        super().__init__(model, self._certify, planner.patience)
+        horizon, discount = planner.horizon, planner.discount
+        self.limits = planner
+        self.joint = JointSearch(model, horizon=horizon, discount=discount)
+        self.beam = BeamSearch(model, width=100, alike=1, horizon=horizon, discount=discount, residue=0.0)
+        self.certificate: Certificate | None = None
+
+    def _certify(
+        self,
+        belief: NDArray[np.float64],
+        moves: Sequence[int],
+        done: Sequence[int],
+        announced: Sequence[Sequence[int]],
+    ) -> Sequence[Sequence[int]]:
+        plan = self.beam.run(belief, moves, done, announced).moves
+        plan = respond(self.joint, belief, moves, done, plan, rounds=10)
+        limits = self.limits
+        self.certificate = self.joint.run(belief, moves, done, plan, nodes=limits.nodes, seconds=limits.seconds)
+        return self.certificate.moves
+
+
+def respond(
+    search: JointSearch,
+    belief: NDArray[np.float64],
+    moves: Sequence[int],
+    done: Sequence[int],
+    announced: Sequence[Sequence[int]],
+    *,
+    rounds: int,
+) -> tuple[tuple[int, ...], ...]:
+    """Return the plan of sequential allocation after some rounds of best responses.
+
+    Parameters
+    ----------
+    search : JointSearch
+        Answers for one pursuer at a time.
+    belief, moves, done, announced
+        As in :class:`planners.team.TeamSearch`; the announced plan, where there is one, is improved too, and the
+        better of the two results returned.
+    rounds : int
+        Rounds of answers at most.
+    """
+    team = range(len(moves))
+    plans: tuple[tuple[int, ...], ...] = ((),) * len(moves)
+    for i in team:
+        plans = search.run(belief, moves, done, plans, who=[i], absent=team[i + 1 :]).moves
+    results = [plans] + ([tuple(map(tuple, announced))] if any(announced) else [])
+    for k, plans in enumerate(results):
+        value = search.value(belief, moves, done, plans)
+        for _ in range(rounds):
+            before = value
+            for i in team:
+                answer = search.run(belief, moves, done, plans, who=[i])
+                plans, value = answer.moves, answer.value
+            if value <= before * (1.0 + 1e-9):
+                break
+        results[k] = plans
+    return max(results, key=lambda plan: search.value(belief, moves, done, plan))
