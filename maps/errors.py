@@ -1,9 +1,11 @@
 """The one family of errors: each message is a sentence that a person can act on."""
 
 import difflib
+import math
+import reprlib
 from collections.abc import Iterable
 
-__all__ = ["GeomsimError", "PlanError", "nearest"]
+__all__ = ["GeomsimError", "PlanError", "nearest", "shortened", "shown"]
 
 
 class GeomsimError(Exception):
@@ -12,6 +14,29 @@ class GeomsimError(Exception):
 
 class PlanError(GeomsimError):
     """A floor plan that cannot be read or used; the message names the file and the place in it."""
+
+
+class _Short(reprlib.Repr):
+    """Bounded in depth and length, so that no value that a file can hold makes a sentence long."""
+
+    def repr_int(self, x: int, level: int) -> str:  # noqa: ARG002 the signature is given
+        """Write out numbers of up to 20 digits; Python refuses to do it for one of thousands."""
+        digits = int(abs(x).bit_length() * math.log10(2)) + 1
+        return repr(x) if digits <= 20 else f"a whole number of about {digits} digits"
+
+
+_SHORT = _Short()
+_SHORT.maxlevel, _SHORT.maxstring, _SHORT.maxother = 2, 80, 80
+
+
+def shown(value: object) -> str:
+    """Write a value that was received into an error sentence: in full if it is short, else the beginning of it."""
+    return _SHORT.repr(value)
+
+
+def shortened(name: str, most: int = 200) -> str:
+    """Cut off the end of a name that would fill the screen."""
+    return name if len(name) <= most else f"{name[:most]}..."
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:
@@ -25,7 +50,7 @@ def nearest(name: str, valid: Iterable[str]) -> str:
         What would have been accepted.
     """
     names = list(valid)
-    close = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1, cutoff=0.5)
+    close = difflib.get_close_matches(name[:80].lower(), [n.lower() for n in names], n=1, cutoff=0.5)
     if close:
         match = next(n for n in names if n.lower() == close[0])
         return f"did you mean {match!r}?"

@@ -21,11 +21,11 @@ from typing import Any
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from maps.errors import PlanError, nearest
+from maps.errors import PlanError, nearest, shown
 from maps.floorplan import FloorPlan, Label
 from maps.making import make_plan
 from maps.texts import load_json
-from maps.units import ToMetres, frame_of
+from maps.units import ToMetres, frame_of, is_number
 
 __all__ = ["features_of", "geojson_text", "load_geojson", "parse_geometry", "read_geojson", "write_geojson"]
 
@@ -59,7 +59,7 @@ def read_geojson(path: Path, *, units: str | None = None, name: str = "", source
         at = f"{where}: feature {i + 1}"
         kind = properties.get("kind", "label" if geometry.geom_type == "Point" else "free")
         if kind not in KINDS:
-            raise PlanError(f"{at} has the kind {kind!r}; {nearest(str(kind), KINDS)}")
+            raise PlanError(f"{at} has the kind {shown(kind)}; {nearest(str(kind), KINDS)}")
         if kind in ("free", "room"):
             free.append(_polygonal(geometry, at, kind))
         elif kind in ("wall", "obstacle"):
@@ -105,7 +105,9 @@ def features_of(data: dict[str, Any], where: str) -> Iterator[tuple[BaseGeometry
         features = [{"type": "Feature", "geometry": data}]
     else:
         valid = ("FeatureCollection", "Feature", *GEOMETRIES)
-        raise PlanError(f"{where}: the member 'type' is {kind!r}, so this is not GeoJSON; {nearest(str(kind), valid)}")
+        raise PlanError(
+            f"{where}: the member 'type' is {shown(kind)}, so this is not GeoJSON; {nearest(str(kind), valid)}"
+        )
     for i, feature in enumerate(features):
         at = f"{where}: feature {i + 1}"
         if not isinstance(feature, dict) or feature.get("type") != "Feature":
@@ -121,7 +123,7 @@ def parse_geometry(data: object, at: str) -> BaseGeometry:
     """Make a shapely geometry of a GeoJSON geometry; PlanError where its type or its coordinates are wrong."""
     kind = data.get("type") if isinstance(data, dict) else data
     if not isinstance(data, dict) or kind not in GEOMETRIES:
-        raise PlanError(f"{at} has the geometry type {kind!r}; {nearest(str(kind), GEOMETRIES)}")
+        raise PlanError(f"{at} has the geometry type {shown(kind)}; {nearest(str(kind), GEOMETRIES)}")
     try:
         return shapely.force_2d(shapely.from_geojson(json.dumps(_closed(data))))
     except (shapely.GEOSException, KeyError, ValueError, TypeError) as exc:
@@ -160,31 +162,38 @@ def _solid(
         return wall
     if geometry.geom_type not in ("LineString", "MultiLineString"):
         raise PlanError(f"{at} is a {geometry.geom_type}; walls and obstacles are polygons or lines.")
-    if isinstance(width, bool) or not isinstance(width, int | float) or not 0 < width * scale < 100:
-        raise PlanError(f"{at} is a wall drawn as a line; its property 'width' must be a thickness, not {width!r}.")
-    return shapely.buffer(wall, width * scale / 2, cap_style="square", join_style="mitre")
+    if width is None:
+        raise PlanError(f"{at} is a wall drawn as a line; its property 'width', how thick it is, is missing.")
+    thickness = float(width) * scale if is_number(width) else 0.0  # type: ignore[arg-type]
+    if not 0 < thickness < 100:
+        raise PlanError(
+            f"{at} is a wall drawn as a line; its property 'width' must be a thickness, not {shown(width)}."
+        )
+    return shapely.buffer(wall, thickness / 2, cap_style="square", join_style="mitre")
 
 
 def _label(geometry: BaseGeometry, properties: dict[str, Any], at: str) -> Label:
     number = properties.get("number")
     if number is not None and (isinstance(number, bool) or not isinstance(number, int)):
-        raise PlanError(f"{at} has the number {number!r}; room numbers are whole numbers from 1.")
+        raise PlanError(f"{at} has the number {shown(number)}; room numbers are whole numbers from 1.")
     name = properties.get("name")
     point = shapely.point_on_surface(geometry)
+    if point.is_empty:
+        raise PlanError(f"{at} is a label without a place; its geometry is empty.")
     return Label((point.x, point.y), "" if name is None else str(name), number)
 
 
 def _text(data: dict[str, Any], key: str, where: str) -> str:
     value = data.get(key, "")
     if not isinstance(value, str):
-        raise PlanError(f"{where}: the member {key!r} is {value!r}; it must be a text.")
+        raise PlanError(f"{where}: the member {key!r} is {shown(value)}; it must be a text.")
     return value
 
 
 def _numbers(data: dict[str, Any], where: str) -> list[int]:
     start = data.get("start", [])
     if not isinstance(start, list):
-        raise PlanError(f"{where}: start is a list of cell numbers from 1, not {start!r}.")
+        raise PlanError(f"{where}: start is a list of cell numbers from 1, not {shown(start)}.")
     return start
 
 

@@ -15,6 +15,7 @@ from maps.floorplan import FloorPlan, Label, Repair
 from maps.levels import choose_level
 from maps.making import make_plan
 from maps.openings import long_axis, open_door
+from maps.texts import read_bytes
 
 __all__ = ["read_ifc"]
 
@@ -73,10 +74,7 @@ def read_ifc(path: Path, *, level: str | int | None = None) -> FloorPlan:
 
 def _open(path: Path, where: str) -> Any:
     ifcopenshell = need("ifcopenshell", where)
-    try:
-        head = path.read_bytes()[:64]
-    except OSError as exc:
-        raise PlanError(f"{where}: the file cannot be read ({exc.strerror}).") from exc
+    head = read_bytes(path, where)[:64]
     if not head.lstrip(b"\xef\xbb\xbf \r\n").startswith(b"ISO-10303-21"):
         raise PlanError(f"{where}: this is no IFC file; it does not begin with ISO-10303-21.")
     try:

@@ -8,8 +8,9 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from maps.errors import PlanError
+from maps.errors import PlanError, shown
 from maps.floorplan import FloorPlan, FreeSpace, Label, Repair
+from maps.openings import doorways
 
 __all__ = ["BODY", "GRID", "SMALLEST_PART", "make_plan"]
 
@@ -43,9 +44,9 @@ def make_plan(
 
     Polygons that overlap or touch along an edge become one free space, whose coordinates are rounded to a millimetre
     and whose vertices within half a millimetre of a straight wall are left out. Whatever changes more than that is
-    listed in the repairs of the plan: broken rings, walls and crevices without width, needles, and parts that are too
-    small for a person (see ``BODY`` and ``SMALLEST_PART``). The same free space gives the same plan whatever the
-    order, direction and first vertex of its rings.
+    listed in the repairs of the plan: broken rings, walls and crevices without width, needles, parts that are too small
+    for a person (see ``BODY`` and ``SMALLEST_PART``), and walls that run right through where a door is drawn. The same
+    free space gives the same plan whatever the order, direction and first vertex of its rings.
 
     Parameters
     ----------
@@ -83,6 +84,8 @@ def make_plan(
     if walls:
         cut = shapely.union_all([_mend(wall, done) for wall in walls], grid_size=GRID)
         free = _without(free, cut)
+    doors = list(doors)
+    free = _with_doorways(free, doors, done)
     free = _without_needles(free, done)
     simple = shapely.simplify(free, GRID / 2, preserve_topology=True)
     free = _canonical(_without_specks(simple if simple.is_valid else free, where, done))
@@ -129,7 +132,7 @@ def _check_size(polygons: list[shapely.Polygon], where: str) -> None:
     width, height = np.ptp(xy, axis=0)
     if max(width, height) > LARGEST_EXTENT:
         raise PlanError(
-            f"{where}: the plan is {width:.0f} m x {height:.0f} m; at most 10 km are possible. Are its units metres?"
+            f"{where}: the plan is {width:.3g} m x {height:.3g} m; at most 10 km are possible. Are its units metres?"
         )
     # Beyond this, numbers of 64 bits cannot hold a millimetre.
     if np.abs(xy).max() > 1e11:
@@ -171,6 +174,15 @@ def _without(free: BaseGeometry, cut: BaseGeometry) -> BaseGeometry:
     """Cut something out; on a grid that may leave lines and points behind, which are no space."""
     rest = shapely.get_parts(shapely.difference(free, cut, grid_size=GRID))
     return shapely.MultiPolygon([part for part in rest if isinstance(part, shapely.Polygon)])
+
+
+def _with_doorways(free: BaseGeometry, doors: list[BaseGeometry], done: list[Repair]) -> BaseGeometry:
+    """Open walls that run right through where a door is drawn."""
+    openings = doorways(free, doors)
+    for opening in openings:
+        message = f"The wall behind the door {_near(opening)} ran right through; the door was cut out of it."
+        done.append(Repair("cut door", message, opening))
+    return shapely.union_all([free, *openings], grid_size=GRID) if openings else free
 
 
 def _without_needles(free: BaseGeometry, done: list[Repair]) -> BaseGeometry:
@@ -257,7 +269,7 @@ def _labels(labels: Iterable[Label], free: FreeSpace, where: str, done: list[Rep
     for label in labels:
         if not np.isfinite(label.point).all():
             raise PlanError(
-                f"{where}: the label {label.name!r} is at {label.point}; coordinates must be finite numbers."
+                f"{where}: the label {shown(label.name)} is at {label.point}; coordinates must be finite numbers."
             )
         if label.number is not None and (label.number < 1 or label.number in numbers):
             raise PlanError(f"{where}: the room number {label.number} must be 1 or more and be there once only.")
@@ -267,9 +279,8 @@ def _labels(labels: Iterable[Label], free: FreeSpace, where: str, done: list[Rep
         if free.covers(point):
             kept.append(Label((x, y), label.name, label.number))
         else:
-            message = (
-                f"The label {label.name or label.number!r} {_near(point)} is not in the free space and was dropped."
-            )
+            name = shown(label.name or label.number)
+            message = f"The label {name} {_near(point)} is not in the free space and was dropped."
             done.append(Repair("dropped label", message, point))
     return kept
 
@@ -277,7 +288,7 @@ def _labels(labels: Iterable[Label], free: FreeSpace, where: str, done: list[Rep
 def _start(start: Sequence[int], where: str) -> tuple[int, ...]:
     for number in start:
         if isinstance(number, bool) or not isinstance(number, int) or number < 1:
-            raise PlanError(f"{where}: start is a list of cell numbers from 1, and {number!r} is not one.")
+            raise PlanError(f"{where}: start is a list of cell numbers from 1, and {shown(number)} is not one.")
     return tuple(start)
 
 

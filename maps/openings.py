@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 
 from maps.floorplan import Repair
 
-__all__ = ["DOOR", "REACH", "WALL", "Opening", "long_axis", "open_door", "thick_walls", "wall_at"]
+__all__ = ["DOOR", "REACH", "WALL", "Opening", "doorways", "long_axis", "open_door", "thick_walls", "wall_at"]
 
 DOOR = 0.9
 """Width of a door whose source does not say how wide it is, metres."""
@@ -21,6 +21,9 @@ WALL = 0.1
 
 REACH = 0.6
 """A door leads to rooms that are at most this far from its middle, metres: half the thickest wall."""
+
+THICKEST = 0.5
+"""A door that is drawn on a wall without an opening leads through it if it is no thicker than this, metres."""
 
 Opening = tuple[shapely.Polygon, shapely.LineString]
 
@@ -69,6 +72,50 @@ def open_door(
     if not all(_overlap(rooms[k], floor) for k in (first, second)):
         return None
     return floor, shapely.LineString(ends)
+
+
+def doorways(free: BaseGeometry, doors: Sequence[BaseGeometry]) -> list[shapely.Polygon]:
+    """Find what of a wall must go so that the doors drawn on it lead through.
+
+    Parameters
+    ----------
+    free : shapely geometry
+        Free space, metres.
+    doors : sequence of shapely geometry
+        Lines from jamb to jamb, metres; others are passed over.
+
+    Returns
+    -------
+    list of shapely.Polygon
+        One for each door on a wall of at most ``THICKEST`` that runs right through, with free space on both sides;
+        it reaches a little into that. A door that an opening lies behind, if only in part, has none.
+    """
+    found = []
+    shapely.prepare(free)
+    for door in doors:
+        ends = shapely.get_coordinates(door)[[0, -1]] if isinstance(door, shapely.LineString) and door.coords else None
+        if ends is None or not np.isfinite(ends).all() or not 0 < np.hypot(*(ends[1] - ends[0])) < 100:
+            continue
+        along = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
+        across = np.array([-along[1], along[0]])
+        places = np.linspace(ends[0] + 0.01 * along, ends[1] - 0.01 * along, 5)
+        stretches = [_wall_across(free, place, across) for place in places]
+        before, behind = np.min([low for low, _ in stretches]), np.max([high for _, high in stretches])
+        if all(high > low for low, high in stretches) and behind - before <= THICKEST:
+            near, far = (before - 0.01) * across, (behind + 0.01) * across
+            found.append(shapely.Polygon([ends[0] + near, ends[1] + near, ends[1] + far, ends[0] + far]))
+    return found
+
+
+def _wall_across(free: BaseGeometry, place: NDArray[np.float64], across: NDArray[np.float64]) -> tuple[float, float]:
+    """From where to where, seen from a place in one direction, there is wall; (0, 0) if the place is free."""
+    reach = 2 * THICKEST * across  # what ends only with the probe is thicker than any wall with a door
+    rest = shapely.difference(shapely.LineString([place - reach, place + reach]), free)
+    for piece in shapely.get_parts(rest)[~shapely.is_empty(shapely.get_parts(rest))]:
+        low, high = np.sort((shapely.get_coordinates(piece) - place) @ across)[[0, -1]]
+        if low <= 0.002 and high >= -0.002 and high - low > 0.0005:
+            return float(low), float(high)
+    return 0.0, 0.0
 
 
 def _overlap(room: shapely.Polygon, strip: shapely.Polygon) -> bool:

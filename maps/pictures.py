@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import cv2
@@ -9,10 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from maps.errors import PlanError
+from maps.picturesizes import picture_size
+from maps.texts import read_bytes
 
 __all__ = ["MOST_PIXELS", "read_picture"]
 
 MOST_PIXELS = 40_000_000
+"""A picture of more pixels than this is not decoded."""
+
+_ONE_AT_A_TIME = threading.Lock()
 
 
 def read_picture(path: Path, where: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
@@ -37,23 +46,40 @@ def read_picture(path: Path, where: str) -> tuple[NDArray[np.float64], NDArray[n
     PlanError
         If the file is missing, is no image, is cut short or is too large.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as exc:
-        raise PlanError(f"{where}: the image {path} cannot be read ({exc.strerror}).") from exc
+    data = read_bytes(path, where)
+    size = picture_size(data)
+    if size is not None and size[0] * size[1] > MOST_PIXELS:
+        raise PlanError(
+            f"{where}: the image {path} has {size[0]} x {size[1]} pixels; at most {MOST_PIXELS} are possible."
+        )
     if not _complete(data):
         raise PlanError(f"{where}: the image {path} is corrupt; its end is missing.")
-    pixels = _decode(data)
+    with _hushed():
+        pixels = _decode(data)
     if pixels is None:
         raise PlanError(f"{where}: {path} is not an image that can be read.")
-    if pixels.shape[0] * pixels.shape[1] > MOST_PIXELS:
-        height, width = pixels.shape[:2]
-        raise PlanError(f"{where}: the image {path} has {width} x {height} pixels; at most {MOST_PIXELS} are possible.")
     scale = float(np.iinfo(pixels.dtype.name).max) if np.issubdtype(pixels.dtype, np.integer) else 1.0
     layers = np.atleast_3d(pixels)
     colours = layers.shape[2] - (layers.shape[2] in (2, 4))
     opaque = layers[:, :, -1] > scale / 2 if colours < layers.shape[2] else np.ones(layers.shape[:2], dtype=np.bool_)
     return layers[:, :, :colours].mean(axis=2) / scale, opaque
+
+
+@contextmanager
+def _hushed() -> Iterator[None]:
+    """Send away what is written to standard error meanwhile: the library for PNG writes there, past Python."""
+    with _ONE_AT_A_TIME, ExitStack() as stack:
+        try:
+            error = os.dup(2)
+        except OSError:  # it is closed, so nothing can be written there
+            yield
+            return
+        stack.callback(os.close, error)
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        stack.callback(os.close, nowhere)
+        os.dup2(nowhere, 2)
+        stack.callback(os.dup2, error, 2)
+        yield
 
 
 def _decode(data: bytes) -> NDArray[np.integer | np.floating] | None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from maps.errors import PlanError, nearest
+from maps.errors import PlanError, nearest, shortened, shown
 from maps.floorplan import FloorPlan, Label, Repair
 from maps.making import make_plan
 from maps.texts import load_yaml
@@ -29,7 +29,7 @@ def read_pyrobosim(path: Path) -> FloorPlan:
     data = load_yaml(path, where)
     rooms: dict[str, shapely.Polygon] = {}
     for i, room in enumerate(_entries(data, "rooms", where)):
-        name = str(room.get("name", f"room_{i}"))
+        name = shortened(str(room.get("name", f"room_{i}")))
         rooms[name] = _room(room, f"{where}: room {name!r}")
     if not rooms:
         raise PlanError(f"{where}: there is no free space in it, no room at all.")
@@ -63,7 +63,7 @@ def _room(room: dict[str, Any], at: str) -> shapely.Polygon:
     kind = footprint.get("type") if isinstance(footprint, dict) else footprint
     shapes = ("polygon", "box", "circle")
     if not isinstance(footprint, dict) or kind not in shapes:
-        raise PlanError(f"{at} has a footprint of type {kind!r}; {nearest(str(kind), shapes)}")
+        raise PlanError(f"{at} has a footprint of type {shown(kind)}; {nearest(str(kind), shapes)}")
     try:
         if kind == "polygon":
             outline = shapely.Polygon([(float(x), float(y)) for x, y in footprint["coords"]])
@@ -74,7 +74,7 @@ def _room(room: dict[str, Any], at: str) -> shapely.Polygon:
             outline = shapely.Point(0, 0).buffer(float(footprint["radius"]))
         x, y = (float(v) for v in footprint.get("offset", [0.0, 0.0]))
         return _placed(shapely.affinity.translate(outline, x, y), room.get("pose"))
-    except (KeyError, TypeError, ValueError, AttributeError) as exc:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as exc:
         raise PlanError(f"{at} has a footprint or a pose whose numbers are missing or wrong.") from exc
 
 
@@ -97,12 +97,12 @@ def _hallway(hall: dict[str, Any], rooms: dict[str, shapely.Polygon], at: str) -
     names = hall.get("room_start"), hall.get("room_end")
     for name in names:
         if name not in rooms:
-            raise PlanError(f"{at} leads to the room {name!r}, which is not there; {nearest(str(name), rooms)}")
+            raise PlanError(f"{at} leads to the room {shown(name)}, which is not there; {nearest(str(name), rooms)}")
     start, end = rooms[str(names[0])], rooms[str(names[1])]
     method = hall.get("conn_method", "auto")
     methods = ("auto", "angle", "points")
     if method not in methods:
-        raise PlanError(f"{at} has the conn_method {method!r}; {nearest(str(method), methods)}")
+        raise PlanError(f"{at} has the conn_method {shown(method)}; {nearest(str(method), methods)}")
     try:
         width, offset = float(hall["width"]), float(hall.get("offset", 0.0))
         line: shapely.LineString | None
@@ -110,10 +110,10 @@ def _hallway(hall: dict[str, Any], rooms: dict[str, shapely.Polygon], at: str) -
             line = shapely.LineString([(float(x), float(y)) for x, y in hall["conn_points"]])
         else:
             line = _straight(start, end, offset, float(hall["conn_angle"]) if method == "angle" else None)
-    except (KeyError, TypeError, ValueError) as exc:
+    except (KeyError, TypeError, ValueError, OverflowError) as exc:
         raise PlanError(f"{at} has numbers that are missing or wrong.") from exc
     if line is None or width <= 0:
-        raise PlanError(f"{at} does not reach from the room {names[0]!r} to the room {names[1]!r}.")
+        raise PlanError(f"{at} does not reach from the room {shown(names[0])} to the room {shown(names[1])}.")
     return shapely.buffer(line, width / 2, cap_style="flat", join_style="mitre")
 
 

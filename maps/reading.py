@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from codecs import BOM_UTF8
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import resources
@@ -10,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from maps.dxf import read_dxf
-from maps.errors import PlanError, nearest
+from maps.errors import PlanError, nearest, shortened, shown
 from maps.floorplan import FloorPlan
 from maps.geojson import read_geojson
 from maps.houseexpo import read_houseexpo
@@ -23,6 +24,7 @@ from maps.pyrobosim import read_pyrobosim
 from maps.resplan import read_resplan
 from maps.ros import read_ros
 from maps.svg import read_svg
+from maps.texts import check_file, read_bytes, reason
 from maps.wkt import read_wkt
 from maps.wrld import read_wrld
 
@@ -123,34 +125,36 @@ def read_plan(
         _check_options("bundled plan", (), options, given)
         with resources.as_file(resources.files("maps") / "bundled" / f"{given}.geojson") as file:
             return read_geojson(file, source="bundled")
+    if not given.strip():
+        raise PlanError("The name of the floor plan is empty.")
     path = Path(name_or_path)
-    kind = _format(path, given)
+    kind = _format(path, shortened(given))
     _check_options(kind.name, kind.options, options, given)
     return kind.read(path, **options)
 
 
 def _format(path: Path, given: str) -> Format:
     """Find out what kind of file it is."""
-    if not given.strip():
-        raise PlanError("The name of the floor plan is empty.")
     suffix = path.suffix.lower()
-    if path.is_dir():
-        raise PlanError(f"{given} is a folder; a floor plan is a file.")
-    if not path.exists():
+    try:
+        if path.is_dir():
+            raise PlanError(f"{given} is a folder; a floor plan is a file.")
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError) as exc:
         hint = f" and no bundled plan of this name; {nearest(given, bundled_names())}" if not suffix else "."
-        raise PlanError(f"There is no file {given}{hint}")
+        raise PlanError(f"There is no file {given}{hint}") from exc
+    except (OSError, ValueError) as exc:
+        raise PlanError(f"The file {given} cannot be read ({reason(exc)}).") from exc
+    check_file(path, given)
     possible = [kind for kind in FORMATS if suffix in kind.suffixes]
     if not possible:
         known = ", ".join(sorted({known for kind in FORMATS for known in kind.suffixes}))
         raise PlanError(f"{given}: files of the kind {suffix or '(no suffix)'} cannot be read; readable are {known}.")
-    try:
-        content = path.read_bytes() if len(possible) > 1 else b""
-    except OSError as exc:
-        raise PlanError(f"{given}: the file cannot be read ({exc.strerror}).") from exc
+    content = read_bytes(path, given).removeprefix(BOM_UTF8) if len(possible) > 1 else b""
     return next(kind for kind in possible if re.search(kind.sign, content))
 
 
 def _check_options(kind: str, known: tuple[str, ...], options: dict[str, Any], given: str) -> None:
     for key, value in options.items():
         if key not in known:
-            raise PlanError(f"{given}: {key} is {value!r}, but a {kind} has no use for it; leave it out.")
+            raise PlanError(f"{given}: {key} is {shown(value)}, but a {kind} has no use for it; leave it out.")

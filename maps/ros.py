@@ -7,7 +7,6 @@ in mode ``raw`` the value itself is the occupancy in percent, and above 100 it i
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +14,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from maps.errors import PlanError, nearest
+from maps.errors import PlanError, nearest, shown
 from maps.floorplan import FloorPlan, Repair
 from maps.pictures import read_picture
 from maps.raster import plan_from_mask
 from maps.texts import load_yaml
-from maps.units import check_resolution
+from maps.units import check_resolution, is_number
 
 __all__ = ["read_ros"]
 
@@ -46,18 +45,18 @@ def read_ros(path: Path, *, structure: bool | None = None) -> FloorPlan:
     where = str(path)
     data = load_yaml(path, where)
     if "image" not in data:
-        keys = ", ".join(repr(key) for key in list(data)[:6])
+        keys = ", ".join(shown(key) for key in list(data)[:6])
         raise PlanError(f"{where}: this is not a ROS map; it has no key 'image' but {keys}.")
     image = data["image"]
     if not isinstance(image, str) or not image:
-        raise PlanError(f"{where}: image is {image!r}; it must be the name of a file.")
+        raise PlanError(f"{where}: image is {shown(image)}; it must be the name of a file.")
     resolution = check_resolution(_number(data, "resolution", where), where)
-    origin = data.get("origin")
-    if not isinstance(origin, list) or len(origin) != 3 or not all(_is_number(v) for v in origin):
-        raise PlanError(f"{where}: origin is {origin!r}; it must be a list [x, y, yaw] of three finite numbers.")
+    origin = _value(data, "origin", where)
+    if not isinstance(origin, list) or len(origin) != 3 or not all(is_number(v) for v in origin):
+        raise PlanError(f"{where}: origin is {shown(origin)}; it must be a list [x, y, yaw] of three finite numbers.")
     mode = data.get("mode", "trinary")
     if mode not in MODES:
-        raise PlanError(f"{where}: mode is {mode!r}; {nearest(str(mode), MODES)}")
+        raise PlanError(f"{where}: mode is {shown(mode)}; {nearest(str(mode), MODES)}")
     negate, free_below = _negate(data, where), _threshold(data, "free_thresh", where)
     if free_below > _threshold(data, "occupied_thresh", where):
         raise PlanError(f"{where}: free_thresh {free_below} is larger than occupied_thresh {data['occupied_thresh']}.")
@@ -99,18 +98,18 @@ def _saved_as_unknown(
     return unknown, [Repair("unknown pixels", message, shapely.GeometryCollection())]
 
 
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+def _value(data: dict[str, Any], key: str, where: str) -> Any:
+    if key not in data:
+        unknown = [str(k) for k in data if k not in KEYS]
+        hint = f"; is it {shown(unknown[0])}?" if unknown else "."
+        raise PlanError(f"{where}: the key {key!r} is missing{hint}")
+    return data[key]
 
 
 def _number(data: dict[str, Any], key: str, where: str) -> float:
-    if key not in data:
-        unknown = [str(k) for k in data if k not in KEYS]
-        hint = f"; is it {unknown[0]!r}?" if unknown else "."
-        raise PlanError(f"{where}: the key {key!r} is missing{hint}")
-    value = data[key]
-    if not _is_number(value):
-        raise PlanError(f"{where}: {key} is {value!r}; it must be a finite number.")
+    value = _value(data, key, where)
+    if not is_number(value):
+        raise PlanError(f"{where}: {key} is {shown(value)}; it must be a finite number.")
     return float(value)
 
 
@@ -122,6 +121,7 @@ def _threshold(data: dict[str, Any], key: str, where: str) -> float:
 
 
 def _negate(data: dict[str, Any], where: str) -> bool:
-    if "negate" not in data or data["negate"] not in (0, 1):
-        raise PlanError(f"{where}: negate is {data.get('negate')!r}; it must be 0 or 1.")
-    return bool(data["negate"])
+    value = _value(data, "negate", where)
+    if value not in (0, 1):
+        raise PlanError(f"{where}: negate is {shown(value)}; it must be 0 or 1.")
+    return bool(value)

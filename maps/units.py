@@ -9,10 +9,19 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from maps.errors import PlanError, nearest
+from maps.errors import PlanError, nearest, shown
 from maps.floorplan import Repair
 
-__all__ = ["METRES", "LocalFrame", "ToMetres", "check_resolution", "frame_of", "looks_like_degrees", "metres_per"]
+__all__ = [
+    "METRES",
+    "LocalFrame",
+    "ToMetres",
+    "check_resolution",
+    "frame_of",
+    "is_number",
+    "looks_like_degrees",
+    "metres_per",
+]
 
 ToMetres = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
@@ -35,15 +44,18 @@ METRES = {
 }
 """Length of each unit in metres (foot and inch: the international ones, exact by definition)."""
 
+FINEST, COARSEST = 1e-6, 100.0
+"""Sizes between which that of a pixel, a grid cell or a unit must be, metres."""
+
 
 def metres_per(unit: object, where: str) -> float:
     """Length of a unit in metres; PlanError with the nearest name if there is no such unit."""
     if not isinstance(unit, str):
-        raise PlanError(f"{where}: units is {unit!r}; it must be the name of a unit such as 'm' or 'mm'.")
+        raise PlanError(f"{where}: units is {shown(unit)}; it must be the name of a unit such as 'm' or 'mm'.")
     name = unit.strip().lower()
     name = name if name in METRES else name.removesuffix("s")
     if name not in METRES:
-        raise PlanError(f"{where}: the unit {unit!r} is not known; {nearest(unit, METRES)}")
+        raise PlanError(f"{where}: the unit {shown(unit)} is not known; {nearest(unit, METRES)}")
     return METRES[name]
 
 
@@ -120,9 +132,19 @@ def frame_of(xy: NDArray[np.float64], units: object, where: str) -> tuple[ToMetr
     return frame.metres, 1.0, [Repair("projected", message, shapely.Point(0, 0))]
 
 
+def is_number(value: object) -> bool:
+    """Whether a value is a finite number, and no whole number that is too large for a floating-point one."""
+    try:
+        return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    except OverflowError:
+        return False
+
+
 def check_resolution(resolution: object, where: str) -> float:
     """Return a resolution as a number; PlanError unless it is the size of a pixel or of a unit in metres."""
-    number = isinstance(resolution, int | float) and not isinstance(resolution, bool) and math.isfinite(resolution)
-    if not number or not 0 < float(resolution) < 100:  # type: ignore[arg-type]
-        raise PlanError(f"{where}: resolution is {resolution!r}; it must be the size of a pixel, in metres.")
+    if not is_number(resolution) or not FINEST <= float(resolution) < COARSEST:  # type: ignore[arg-type]
+        raise PlanError(
+            f"{where}: resolution is {shown(resolution)}; it must be the size of a pixel in metres, from {FINEST:g} to "
+            f"{COARSEST:g}."
+        )
     return float(resolution)  # type: ignore[arg-type]

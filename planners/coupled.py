@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.costs import Cost, Hops, find_cost
-from planners.lookahead import TIE
+from planners.lookahead import DEEPEST, TIE
 from planners.policy import Decision, SearchProblem, SearchState
 from planners.simulation import SearchModel
-from planners.team import PlannerError, at_least
+from planners.team import PlannerError, at_least, at_most
 
 __all__ = ["Coupled"]
 
@@ -36,14 +36,14 @@ class Coupled:
     cost : str
         Name of a heuristic in :data:`planners.COSTS`.
     depth : int
-        Number of hops to look ahead, at least 1.
+        Number of hops to look ahead, 1 to 100.
 
     Raises
     ------
     CostError
         If there is no such heuristic.
     PlannerError
-        If the depth is below 1; when deciding, if there are more than 200,000 joint paths.
+        If the depth is below 1 or above 100; when deciding, if there are more than 200,000 joint paths.
     """
 
     cost: str = "entropy"
@@ -52,6 +52,7 @@ class Coupled:
     def __post_init__(self) -> None:
         find_cost(self.cost)
         at_least(1, depth=self.depth)
+        at_most(DEEPEST, depth=self.depth)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> CoupledPolicy:
         """Prepare a policy; ``rng`` decides between joint paths of equal cost."""
@@ -71,13 +72,14 @@ class CoupledPolicy:
         """Return a path of ``depth`` cells for each pursuer at a checkpoint, None for the others."""
         team = state.pursuers
         who = [i for i, pursuer in enumerate(team) if pursuer.target is None]
-        walks = [self._walks(team[i].cell, self.depth) for i in who]
-        count = float(np.prod([float(len(w)) for w in walks]))
+        ways = self.model.graph.count_walks(self.depth)
+        count = float(np.prod([max(1.0, ways[team[i].cell]) for i in who]))
         if count > MOST_PATHS:
             raise PlannerError(
                 f"Coupled planning to depth {self.depth} has {count:.3g} joint paths for {len(who)} pursuers; "
                 f"at most {MOST_PATHS} are searched. Use a smaller depth, or 'decoupled'."
             )
+        walks = [self._walks(team[i].cell, self.depth) for i in who]
         unseen = self.model.unseen([self.model.timeline(k, p) for k, p in enumerate(team) if k not in who])
         joint = np.array(list(itertools.product(*(range(len(w)) for w in walks))), dtype=np.intp)
         cost = self._cost(who, [team[i].cell for i in who], walks, joint, state.belief[1:], unseen)

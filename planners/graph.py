@@ -72,6 +72,14 @@ class SearchGraph:
             raise GraphError(f"Cells {cell + 1} and {neighbour + 1} are not next to each other.")
         return int(self.indptr[cell]) + k
 
+    def count_walks(self, hops: int) -> NDArray[np.float64]:
+        """Number of walks over so many hops from each cell, shape (N,)."""
+        count = np.ones(len(self))
+        owner = np.repeat(np.arange(len(self)), self.degree)
+        for _ in range(hops):
+            count = np.bincount(owner, weights=count[self.indices], minlength=len(self)).astype(np.float64)
+        return count
+
     @classmethod
     def from_cells(cls, cells: CellMap) -> SearchGraph:
         """Make the graph of a cell map; ways are the lengths of its routes."""

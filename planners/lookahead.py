@@ -11,12 +11,18 @@ from numpy.typing import NDArray
 from planners.costs import Cost, Hops, find_cost
 from planners.policy import Decision, PursuerState, SearchProblem, SearchState
 from planners.simulation import SearchModel
-from planners.team import at_least
+from planners.team import PlannerError, at_least, at_most
 
 __all__ = ["Decoupled"]
 
 # Costs that differ by less than this share are equal: the order of a sum must not decide between mirror images.
 TIE = 1e-9
+
+# Even where all cells have one neighbour, so that there is one path only, a path has at most so many hops.
+DEEPEST = 100
+
+# Numbers in the beliefs at the ends of all paths, of which there are some copies at a time: 160 MB.
+LARGEST = 20_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,14 +46,14 @@ class Decoupled:
     cost : str
         Name of a heuristic in :data:`planners.COSTS`.
     depth : int
-        Number of hops to look ahead, at least 1.
+        Number of hops to look ahead, 1 to 100.
 
     Raises
     ------
     CostError
         If there is no such heuristic.
     PlannerError
-        If the depth is below 1.
+        If the depth is below 1 or above 100.
     """
 
     cost: str = "entropy"
@@ -56,10 +62,19 @@ class Decoupled:
     def __post_init__(self) -> None:
         find_cost(self.cost)
         at_least(1, depth=self.depth)
+        at_most(DEEPEST, depth=self.depth)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> DecoupledPolicy:
-        """Prepare a policy; ``rng`` decides between paths of equal cost."""
-        return DecoupledPolicy(SearchModel(problem), find_cost(self.cost), self.depth, rng)
+        """Prepare a policy; ``rng`` decides between paths of equal cost.
+
+        Raises
+        ------
+        PlannerError
+            If there are too many paths of this depth.
+        """
+        model = SearchModel(problem)
+        check_depth(model, self.depth)
+        return DecoupledPolicy(model, find_cost(self.cost), self.depth, rng)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,16 +88,29 @@ class DecoupledPolicy:
 
     def decide(self, state: SearchState) -> Sequence[Decision | None]:
         """Return a path of ``depth`` cells for each pursuer at a checkpoint, None for the others."""
-        team = list(state.pursuers)
+        team = state.pursuers
         decisions: list[Decision | None] = [None] * len(team)
+        later = self._unseen_by_later(team)
+        earlier = self.model.unseen([])
         for i, pursuer in enumerate(team):
-            if pursuer.target is not None:
-                continue
-            others = [self.model.timeline(k, other) for k, other in enumerate(team) if k != i]
-            decision = self._best_path(i, pursuer.cell, state.belief[1:], self.model.unseen(others))
-            decisions[i] = decision
-            team[i] = self._under_way(i, pursuer.cell, decision.path[0])
+            now = pursuer
+            if pursuer.target is None:
+                unseen = self.model.together(earlier, later[i])
+                decision = self._best_path(i, pursuer.cell, state.belief[1:], unseen)
+                decisions[i] = decision
+                now = self._under_way(i, pursuer.cell, decision.path[0])
+            earlier = self.model.together(earlier, self.model.unseen([self.model.timeline(i, now)]))
         return decisions
+
+    def _unseen_by_later(self, team: Sequence[PursuerState]) -> dict[int, NDArray[np.float64]]:
+        """Return for each pursuer at a checkpoint what those after it leave unseen, as they are before they decide."""
+        found = {}
+        unseen = self.model.unseen([])
+        for i in reversed(range(len(team))):
+            if team[i].target is None:
+                found[i] = unseen
+            unseen = self.model.together(unseen, self.model.unseen([self.model.timeline(i, team[i])]))
+        return found
 
     def _under_way(self, pursuer: int, cell: int, target: int) -> PursuerState:
         if target == cell:
@@ -98,6 +126,20 @@ class DecoupledPolicy:
         best = total.min()
         leaf = int(self.rng.choice(np.flatnonzero(total <= best + TIE * abs(best))))
         return Decision(tree.path(leaf), float(total[leaf]))
+
+
+def check_depth(model: SearchModel, depth: int) -> None:
+    """Raise PlannerError if there are more paths of a depth from some cell than there is memory for."""
+    most = LARGEST // model.states
+    count = float(model.graph.count_walks(depth).max())
+    if count <= most:
+        return
+    fits = max((d for d in range(1, depth) if model.graph.count_walks(d).max() <= most), default=0)
+    advice = f"the largest depth that would do is {fits}" if fits else "no depth would do"
+    raise PlannerError(
+        f"A lookahead to depth {depth} has up to {count:.3g} paths to search in a map of {len(model.graph)} cells, of "
+        f"which at most {most} are possible; {advice}."
+    )
 
 
 @dataclass(frozen=True, slots=True)

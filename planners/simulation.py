@@ -226,6 +226,11 @@ class SearchModel:
             kept *= self.looks.kept(padded)
         return kept
 
+    def together(self, first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return what two groups of pursuers leave unseen, each as :meth:`unseen` gives it, if both look."""
+        step = np.arange(max(len(first), len(second)))
+        return np.asarray(first[np.minimum(step, len(first) - 1)] * second[np.minimum(step, len(second) - 1)])
+
     def foresee(
         self,
         belief: NDArray[np.float64],

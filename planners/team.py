@@ -12,7 +12,7 @@ from maps import GeomsimError
 from planners.policy import Decision, SearchState
 from planners.simulation import SearchModel
 
-__all__ = ["PlannerError", "TeamPolicy", "TeamSearch", "at_least"]
+__all__ = ["PlannerError", "TeamPolicy", "TeamSearch", "at_least", "at_most"]
 
 # The belief may differ from what the plan foresaw by this much, in total, before the team plans anew: times in the
 # world are not whole belief steps.
@@ -28,6 +28,13 @@ def at_least(least: int, **parameters: int | float) -> None:
     for name, value in parameters.items():
         if not value >= least:
             raise PlannerError(f"A planner's {name} must be at least {least}; got {value}.")
+
+
+def at_most(most: int, **parameters: int | float) -> None:
+    """Raise PlannerError for the first parameter that is above ``most``, or no number."""
+    for name, value in parameters.items():
+        if not value <= most:
+            raise PlannerError(f"A planner's {name} must be at most {most}; got {value}.")
 
 
 class TeamSearch(Protocol):

@@ -131,7 +131,7 @@ def test_longitude_and_latitude_become_metres_and_that_is_said(tmp_path, units):
         ({**ROOM, "start": ["a"]}, "'a' is not one"),
         (
             collection(feature(ROOM), feature({"type": "LineString", "coordinates": [[0, 0], [1, 1]]}, kind="wall")),
-            "feature 2 is a wall drawn as a line; .* not None",
+            "feature 2 is a wall drawn as a line; its property 'width', how thick it is, is missing",
         ),
         (
             collection(feature(ROOM), feature({"type": "Point", "coordinates": [0, 0]}, kind="wall")),

@@ -139,7 +139,7 @@ def test_doors_and_labels_are_kept_where_they_belong():
         (ROOM, {"solid": [Point(0, 0)]}, "walls and obstacles are made of polygons, not of Point"),
         (odd(Polygon, (0, 0), (1, math.nan), (1, 1)), {}, r"vertex 2 is \(1, nan\)"),
         (odd(Polygon, (0, 0), (1, math.inf), (1, 1)), {}, r"vertex 2 is \(1, inf\)"),
-        (box(0, 0, 100_000, 5), {}, "100000 m x 5 m; at most 10 km"),
+        (box(0, 0, 100_000, 5), {}, r"1e\+05 m x 5 m; at most 10 km"),
         (box(1e12, 0, 1e12 + 5, 5), {}, "too far from the origin"),
         (box(0, 0, 0.1, 0.2), {}, "0.1 m x 0.2 m with 0.02 square metres. Are its units metres?"),
         (Polygon([(0, 0), (3, 3), (6, 6)]), {}, "no free space in it for a person"),
@@ -212,3 +212,30 @@ def test_touching_squares_become_one_space_of_the_same_area(squares):
     plan = make_plan([box(x, y, x + 1, y + 1) for x, y in sorted(squares)], name="squares")
     assert plan.area == pytest.approx(len(squares))
     check(plan)
+
+
+@pytest.mark.parametrize("thickness", [0.001, 0.1, 0.5])
+@pytest.mark.parametrize("side", [-0.5, 0.0, 0.5])
+def test_a_door_on_a_wall_that_runs_right_through_is_cut_out_of_it(thickness, side):
+    wall = box(5 - thickness / 2, -1, 5 + thickness / 2, 6)
+    door = LineString([(5 + side * thickness, 1), (5 + side * thickness, 2)])
+    plan = make_plan(box(0, 0, 10, 5), name="two rooms", solid=[wall], doors=[door])
+    assert len(plan.parts) == 1
+    assert plan.area == pytest.approx(50 - 5 * thickness + thickness, abs=1e-6)
+    assert [repair.kind for repair in plan.repairs] == ["cut door"]
+    assert "(5.00, 1.50) ran right through; the door was cut" in plan.repairs[0].message
+
+
+@pytest.mark.parametrize(
+    ("wall", "door"),
+    [
+        pytest.param(box(4.6, -1, 5.4, 6), LineString([(5.0, 1), (5.0, 2)]), id="too thick"),
+        pytest.param(box(4.9, -1, 5.1, 6), LineString([(0.0, 1), (0.0, 2)]), id="outer wall"),
+        pytest.param(box(4.9, -1, 5.1, 1.1), LineString([(5.0, 1), (5.0, 2)]), id="a jamb that is drawn too long"),
+        pytest.param(box(4.9, -1, 5.1, 6), LineString([(2, 1), (2, 2)]), id="in the middle of a room"),
+    ],
+)
+def test_no_other_wall_is_cut(wall, door):
+    plan = make_plan(box(0, 0, 10, 5), name="two rooms", solid=[wall], doors=[door])
+    assert plan.space.equals(box(0, 0, 10, 5) - wall)
+    assert "cut door" not in [repair.kind for repair in plan.repairs]

@@ -27,7 +27,8 @@ def test_there_are_a_house_and_an_office():
         ("nowhere/map.yaml", "There is no file nowhere/map.yaml."),
         (".", ". is a folder; a floor plan is a file."),
         ("", "The name of the floor plan is empty."),
-        ("a\0b", "There is no file"),
+        ("a\0b", "cannot be read (there is a null character in its name)"),
+        ("x" * 5000, "cannot be read (File name too long)"),
     ],
 )
 def test_what_is_not_there_is_refused(given, sentence, tmp_path, monkeypatch):

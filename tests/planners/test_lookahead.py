@@ -7,6 +7,7 @@ from planners import (
     COSTS,
     AreaSpeedDegree,
     CostError,
+    Coupled,
     Decoupled,
     Hops,
     PlannerError,
@@ -19,6 +20,7 @@ from planners import (
     find_cost,
     uniform_belief,
 )
+from planners.lookahead import LARGEST, grow_tree
 
 
 def walks(graph, cell, depth):
@@ -123,3 +125,77 @@ def test_bad_parameters_are_named():
         Decoupled(depth=0)
     with pytest.raises(CostError, match="no cost heuristic 'x'"):
         Decoupled(cost="x")
+
+
+def test_walks_are_counted(house):
+    for cell in range(len(house)):
+        assert house.count_walks(4)[cell] == len(walks(house, cell, 4))
+    np.testing.assert_array_equal(SearchGraph.from_edges(3, [(1, 2)]).count_walks(7), [0, 1, 1])
+
+
+def test_a_depth_of_too_many_paths_is_refused_with_the_largest_that_would_do(house):
+    problem = SearchProblem(house, UniformMotion(), SameCell(), (1.0,))
+    with pytest.raises(
+        PlannerError, match=r"depth 50 has up to 4\.1e\+20 paths .* the largest depth that would do is"
+    ) as caught:
+        Decoupled(depth=50).solve(problem, np.random.default_rng(0))
+    largest = int(str(caught.value).rstrip(".").split()[-1])
+    counts = [house.count_walks(d).max() for d in (largest, largest + 1)]
+    assert counts[0] * 9 <= LARGEST < counts[1] * 9
+    Decoupled(depth=largest).solve(problem, np.random.default_rng(0))
+
+
+def test_long_paths_of_which_there_are_few_are_searched():
+    problem = SearchProblem(SearchGraph.from_edges(2, [(0, 1)]), UniformMotion(), SameCell(), (1.0,))
+    state = SearchState(0.0, uniform_belief(problem.graph, exclude=[0]), (PursuerState(0),), ((),))
+    for planner in (Decoupled(depth=100), Coupled(depth=100)):
+        (decision,) = planner.solve(problem, np.random.default_rng(0)).decide(state)
+        assert decision.path == (1, 0) * 50
+
+
+def test_coupled_paths_are_counted_before_they_are_made(house):
+    problem = SearchProblem(house, UniformMotion(), SameCell(), (1.0, 1.0))
+    state = SearchState(0.0, uniform_belief(house, exclude=[0]), (PursuerState(0),) * 2, ((), ()))
+    with pytest.raises(PlannerError, match=r"depth 60 has \S+e\+\d+ joint paths"):
+        Coupled(depth=60).solve(problem, np.random.default_rng(0)).decide(state)
+
+
+@settings(max_examples=20, deadline=None)
+@given(data=st.data())
+def test_what_the_others_leave_unseen_is_that_of_all_of_them(graphs, data):
+    """Each pursuer plans with those before it as they have decided, and with those after it as they are."""
+    graph = data.draw(graphs(7).filter(lambda g: g.degree.any()))
+    rng = np.random.default_rng(data.draw(st.integers(0, 999)))
+    problem = SearchProblem(graph, UniformMotion(), SameCell(0.7), (1.0, 0.7, 1.6, 0.4, 1.0), time_step=0.6)
+
+    def pursuer():
+        cell = int(rng.choice(np.flatnonzero(graph.degree)))
+        target = int(rng.choice(graph.neighbours(cell)))
+        return PursuerState(cell) if rng.random() < 0.6 else PursuerState(cell, target, 1.3)
+
+    team = tuple(pursuer() for _ in problem.speeds)
+    state = SearchState(0.0, rng.dirichlet(np.ones(len(graph) + 1)), team, ((),) * len(team))
+    policy = Decoupled(depth=2).solve(problem, rng)
+    decisions, now = policy.decide(state), list(team)
+    for i, decision in enumerate(decisions):
+        if decision is None:
+            continue
+        others = [policy.model.timeline(k, other) for k, other in enumerate(now) if k != i]
+        unseen = policy.model.unseen(others)
+        tree = grow_tree(policy.model, i, team[i].cell, state.belief[1:], unseen, policy.cost, 2)
+        np.testing.assert_allclose(decision.cost, tree.costs[-1].min(), rtol=1e-9)
+        move = policy.model.move(team[i].cell, decision.path[0])
+        steps = float(policy.model.moves[i].steps[move])
+        now[i] = PursuerState(team[i].cell, decision.path[0], steps * problem.time_step)
+
+
+def test_a_thousand_pursuers_decide_in_time_that_grows_with_their_number(house, monkeypatch):
+    looked = []
+    model = type(Decoupled().solve(SearchProblem(house, UniformMotion(), SameCell(), (1.0,)), None).model)
+    timeline = model.timeline
+    monkeypatch.setattr(model, "timeline", lambda *given: looked.append(1) or timeline(*given))
+    problem = SearchProblem(house, UniformMotion(), SameCell(), (1.0,) * 1000)
+    state = SearchState(0.0, uniform_belief(house, exclude=[0]), (PursuerState(0),) * 1000, ((),) * 1000)
+    decisions = Decoupled(depth=1).solve(problem, np.random.default_rng(0)).decide(state)
+    assert len(decisions) == 1000
+    assert len(looked) <= 2000
