@@ -114,8 +114,10 @@ def test_the_bank_moves_as_single_evaders_do(office: CellMap) -> None:
         )
         track = np.concatenate([reels[0].positions[:, trial], reels[1].positions[1:, column]])
         cells = np.concatenate([reels[0].cells[:, trial], reels[1].cells[1:, column]])
-        assert np.array_equal(track, alone.evader.astype(np.float32))
-        assert np.array_equal(cells, alone.evader_cells)
+        steps = len(alone.times)  # it may walk into the robot
+        assert steps > 700
+        assert np.array_equal(track[:steps], alone.evader.astype(np.float32))
+        assert np.array_equal(cells[:steps], alone.evader_cells)
 
 
 def test_workers_change_nothing(house: CellMap) -> None:
