@@ -109,11 +109,12 @@ def tally() -> Iterator[Callable[[str, int, int], None] | None]:
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     tasks: dict[str, TaskID] = {}
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    # no thread that refreshes it: workers are forked from this process
+    with Progress(*columns, console=Console(stderr=True), transient=True, auto_refresh=False) as bar:
 
         def tell(name: str, done: int, total: int) -> None:
             if name not in tasks:
                 tasks[name] = bar.add_task(name, total=total)
-            bar.update(tasks[name], completed=done)
+            bar.update(tasks[name], completed=done, refresh=True)
 
         yield tell

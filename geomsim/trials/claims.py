@@ -74,6 +74,12 @@ def _figure_5(trials: Trials) -> list[Claim]:
         claims.append(
             _number(f"{name}: mean capture time", mean, f"{mean:.1f} \u00b1 {sem:.1f} s", seen.mean, seen.sem)
         )
+    share = table["random"].observed.mean / table["stationary"].observed.mean
+    paper = 344.385 / 749.319
+    close = abs(share / paper - 1) <= _NEAR
+    claims.append(
+        Claim("random over stationary, whatever the scale", f"{paper:.2f}", f"{share:.2f}", share / paper, close)
+    )
     names = tuple(f"{cost}-{depth}" for cost in PAPER_COSTS for depth in (1, 5))
     ours = [line for line in table.methods if line.name.endswith(names)]
     best, rival = (
