@@ -32,8 +32,8 @@ def discretize(
     """
     from json import dumps
 
-    from discretize import check_cells, convex_cells, write_cells
-    from geomsim.files import default_folder, replacing, results_folder, write_text
+    from discretize import cells_text, check_cells, convex_cells
+    from geomsim.files import default_folder, results_folder, write_text
 
     begun = time.perf_counter()
     place = flags.read(plan)
@@ -42,8 +42,7 @@ def discretize(
     report = check_cells(cells)
     with results_folder(out or default_folder(place.name, "cells")) as folder:
         files = {"cells": folder / "cells.geojson", "report": folder / "report.json"}
-        with replacing(files["cells"]) as part:
-            write_cells(cells, part)
+        write_text(files["cells"], cells_text(cells))
         if picture:
             from geomsim.drawing import write_cells_picture
 
@@ -63,6 +62,7 @@ def discretize(
         "pockets": list(report.pockets),
         "blocked_doors": list(report.blocked_doors),
         "problems": list(report.problems),
+        "notes": list(report.notes),
         "repairs": [repair.message for repair in place.repairs],
         "seconds": seconds,
         "files": {kind: str(path) for kind, path in files.items()},
@@ -78,7 +78,7 @@ def discretize(
         say(f"cells that a robot of radius {radius:g} m cannot enter: {len(report.pockets)}")
     if report.blocked_doors:
         say(f"doors that it cannot pass: {', '.join(map(str, report.blocked_doors))}")
-    for sentence in (*report.problems, *(repair.message for repair in place.repairs)):
+    for sentence in (*report.problems, *report.notes, *(repair.message for repair in place.repairs)):
         say(f"  {sentence}")
     for kind, path in files.items():
         say(f"{kind + ':':<10} {path}")

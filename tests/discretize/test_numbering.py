@@ -1,8 +1,9 @@
 """Numbers and names of cells."""
 
+import pytest
 import shapely
 
-from discretize import convex_cells
+from discretize import check_cells, convex_cells
 from discretize.numbering import number_cells
 from maps import FloorPlan, Label
 
@@ -47,3 +48,25 @@ def test_cell_map_carries_numbers_and_names():
     cellmap = convex_cells(FloorPlan("flat", space, doors=(door,), labels=labels))
     assert cellmap.names == ("hall", "kitchen")
     assert cellmap.cells[0].bounds == (4, 0, 8, 3)
+    assert check_cells(cellmap).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("labels", "why"),
+    [
+        ([Label((1, 1), number=1), Label((6, 1), number=3)], "there are 2 cells, and the plan numbers 2 from 1 to 3"),
+        ([Label((6, 1), number=1)], "there are 2 cells, and the plan numbers 1 from 1 to 1"),
+        ([Label((1, 1), number=2), Label((2, 1), number=1)], "2 and 1 lie in one cell"),
+    ],
+)
+def test_numbers_that_do_not_count_are_told(labels, why):
+    space, door = shapely.box(0, 0, 8, 3), shapely.LineString([(4, 0), (4, 3)])
+    cellmap = convex_cells(FloorPlan("flat", space, doors=(door,), labels=tuple(labels)))
+    assert [cell.bounds[0] for cell in cellmap.cells] == [0, 4]
+    assert check_cells(cellmap).notes == (f"Room numbers that the plan gives are not those of the cells: {why}.",)
+
+
+def test_numbers_that_are_those_of_the_cells_anyway_need_no_word():
+    space, door = shapely.box(0, 0, 8, 3), shapely.LineString([(4, 0), (4, 3)])
+    labels = (Label((1, 1), number=1), Label((6, 1), "hall"))
+    assert check_cells(convex_cells(FloorPlan("flat", space, doors=(door,), labels=labels))).notes == ()
