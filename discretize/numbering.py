@@ -10,6 +10,9 @@ from maps import Label
 
 __all__ = ["ignored_numbers", "number_cells"]
 
+_BESIDE = 0.01
+"""A label this near to a cell lies in it, metres."""
+
 
 def number_cells(
     cells: Sequence[shapely.Polygon], labels: Sequence[Label]
@@ -35,13 +38,14 @@ def number_cells(
         One for each, empty where there is none.
     """
     hits = _hits(cells, labels)
-    numbers = [(label.number, cell) for label, cell in zip(labels, hits, strict=True) if label.number is not None]
+    placed = [(label, cell) for label, cell in zip(labels, hits, strict=True) if cell < len(cells)]
+    numbers = [(label.number, cell) for label, cell in placed if label.number is not None]
     if sorted(n for n, _ in numbers) == list(range(1, len(cells) + 1)) and len({c for _, c in numbers}) == len(cells):
         order = [cell for _, cell in sorted(numbers)]
     else:
         order = _reading_order(cells)
     names: dict[int, str] = {}
-    for label, cell in zip(labels, hits, strict=True):
+    for label, cell in placed:
         if label.name:
             names.setdefault(cell, label.name)
     return [cells[k] for k in order], tuple(names.get(k, "") for k in order)
@@ -64,7 +68,8 @@ def ignored_numbers(cells: Sequence[shapely.Polygon], labels: Sequence[Label]) -
         if label.number is not None:
             same &= label.number == cell + 1
             twice += [(found[cell], label.number)] if cell in found else []
-            found.setdefault(cell, label.number)
+            if cell < len(cells):
+                found.setdefault(cell, label.number)
     if same:
         return ()
     numbers = sorted(label.number for label in labels if label.number is not None)
@@ -76,11 +81,12 @@ def ignored_numbers(cells: Sequence[shapely.Polygon], labels: Sequence[Label]) -
 
 
 def _hits(cells: Sequence[shapely.Polygon], labels: Sequence[Label]) -> list[int]:
-    """Cell in which each label lies; on a boundary the first, outside of all the nearest."""
+    """Cell in which each label lies, on a boundary the first; N for a label that lies in none."""
     if not labels:
         return []
     tree = shapely.STRtree(list(cells))
-    which, cell = tree.query_nearest(shapely.points([label.point for label in labels]), all_matches=True)
+    points = shapely.points([label.point for label in labels])
+    which, cell = tree.query_nearest(points, max_distance=_BESIDE)
     found: NDArray[np.intp] = np.full(len(labels), len(cells), dtype=np.intp)
     np.minimum.at(found, which, cell)
     return [int(k) for k in found]

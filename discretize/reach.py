@@ -10,6 +10,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from discretize.navmesh import NavMesh, navmesh_of
 from discretize.sharing import segment_tree
 from maps import FreeSpace
 
@@ -26,6 +27,9 @@ _SPECK = 0.05
 
 _SHORT = 1e-6
 """Openings shorter than this are none, metres."""
+
+_CORNERS = 600
+"""Most corners among which the shortest way is sought."""
 
 _TILE = 128
 """Vertices of a piece of the reach small enough to be intersected with one cell."""
@@ -122,10 +126,8 @@ class Reach:
         owner, low, high = owner[open_], low[open_], high[open_]
         return owner, np.stack([_along(segments[owner], low), _along(segments[owner], high)], axis=1)
 
-    def way(
-        self, start: NDArray[np.float64], goal: NDArray[np.float64], margin: float = np.inf
-    ) -> NDArray[np.float64] | None:
-        """Shortest way for a body's centre.
+    def way(self, start: NDArray[np.float64], goal: NDArray[np.float64], margin: float) -> NDArray[np.float64] | None:
+        """Shortest way for a body's centre that stays near.
 
         Parameters
         ----------
@@ -137,16 +139,42 @@ class Reach:
         Returns
         -------
         ndarray, shape (k, 2), or None
-            None where there is no such way.
+            None where there is no such way, or there are too many corners to look at.
         """
         if self.allows(np.stack([start, goal])[None])[0]:
             return np.stack([start, goal])
-        part = self.part_of(np.stack([start, goal]))
-        if part[0] < 0 or part[0] != part[1]:
+        if not self._joined(start, goal):
             return None
         low, high = np.minimum(start, goal) - margin, np.maximum(start, goal) + margin
         near = ((self._corners >= low) & (self._corners <= high)).all(axis=1)
+        if near.sum() > _CORNERS:
+            return None
         return self._by_corners(np.concatenate([start[None], goal[None], self._corners[near]]))
+
+    def far_way(self, start: NDArray[np.float64], goal: NDArray[np.float64]) -> NDArray[np.float64] | None:
+        """Short way for a body's centre, however far around; None where there is none.
+
+        Parameters
+        ----------
+        start, goal : ndarray, shape (2,)
+            Metres.
+        """
+        if not self._joined(start, goal):
+            return None
+        part = int(self.part_of(start[None])[0])
+        if part not in self._meshes:
+            self._meshes[part] = navmesh_of(self.parts[part])
+        corners = self._meshes[part].corners(start, goal)
+        return self._by_corners(np.concatenate([start[None], goal[None], corners]))
+
+    def _joined(self, start: NDArray[np.float64], goal: NDArray[np.float64]) -> bool:
+        part = self.part_of(np.stack([start, goal]))
+        return bool(part[0] == part[1] >= 0)
+
+    @cached_property
+    def _meshes(self) -> dict[int, NavMesh]:
+        """Triangles of the parts that were crossed so far."""
+        return {}
 
     def _by_corners(self, nodes: NDArray[np.float64]) -> NDArray[np.float64] | None:
         """Shortest way from the first to the second node over the others: A*, sight looked up as nodes are reached."""

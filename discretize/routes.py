@@ -39,12 +39,13 @@ class Ways:
     def way(self, start: NDArray[np.float64], goal: NDArray[np.float64]) -> Leg | None:
         """Short way from place to place, with clearance where that is no great detour; None where there is none."""
         near = float(np.hypot(*(goal - start))) + self.tight.radius
-        for margin in (near, 4 * near, np.inf):
+        for margin in (near, 4 * near):
             for reach in (self.roomy, self.tight):
                 way = reach.way(start, goal, margin)
                 if way is not None:
                     return way
-        return None
+        way = self.roomy.far_way(start, goal)
+        return self.tight.far_way(start, goal) if way is None else way
 
     def legs(
         self,

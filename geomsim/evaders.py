@@ -63,9 +63,10 @@ class CentroidBoundary:
     def walk(self, routes: Routes, cell: int, rng: np.random.Generator, lookout: Lookout) -> Iterator[Route]:  # noqa: ARG002
         """Yield routes to uniformly random neighbours."""
         while True:
-            route = _stroll(routes, cell, rng)
-            cell = route.cells[1]
-            yield route
+            for share in rng.random(32).tolist():  # many at a time: a single number costs as much as thirty
+                route = _stroll(routes, cell, share)
+                cell = route.cells[1]
+                yield route
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,16 +147,17 @@ class Fleeing:
                 to = ways[int(np.argmax(gaps))]
                 route = routes.stay(cell, 1.0) if to == cell else routes.between(cell, to)
             else:
-                route = _stroll(routes, cell, rng)
+                route = _stroll(routes, cell, float(rng.random()))
             cell = route.cells[1]
             yield route
 
 
-def _stroll(routes: Routes, cell: int, rng: np.random.Generator) -> Route:
+def _stroll(routes: Routes, cell: int, share: float) -> Route:
+    """Return the route to the neighbour that lies at a share of all, in [0, 1)."""
     neighbours = routes.neighbours[cell]
     if not neighbours:
         return routes.stay(cell, 1.0)
-    return routes.between(cell, neighbours[int(rng.integers(len(neighbours)))])
+    return routes.between(cell, neighbours[int(share * len(neighbours))])
 
 
 EVADERS: Mapping[str, type[EvaderModel]] = MappingProxyType(

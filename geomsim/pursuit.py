@@ -231,7 +231,7 @@ class _Pursuit:
         motion: MotionModel,
         timing: Timing,
     ) -> None:
-        theirs, ours = Streams.of(seeds[0]), Streams.of(seeds[1])
+        theirs, ours = Streams(seeds[0]), Streams(seeds[1])
         starts = place_team(cells, team)
         hideout = place_evader(cells, evader, starts, theirs.placing)
         self.team, self.capture, self.timing = team, capture, timing

@@ -81,7 +81,7 @@ class Quarry:
         while (done := walkers.done).any():
             for k in np.flatnonzero(done).tolist():
                 walkers.take(k, next(self._tours[k]))
-        self.world.step(walkers.wanted(at, velocity, dt), dt)
+        self.world.step(walkers.wanted(dt), dt)
 
     def keep(self, which: NDArray[np.intp]) -> None:
         """Go on with some of the evaders only, given by their indices in rising order."""

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from discretize import CellMap, convex_cells
+from discretize import CellMap, convex_cells, read_cells
 from geomsim.evaders import EVADERS, make_evader_model
 from geomsim.pursuit import CAPTURE_RULES, Timing
 from geomsim.sensing import Sensor
@@ -77,6 +77,7 @@ class Scenario(BaseModel):
     motion: str = "area-speed-degree"
     motion_speed: _Positive | None = None
     method: str = "exact"
+    cells: str | None = None
     clearance: _Positive | None = None
     time_limit: _Positive = 1800.0
     belief_step: _Positive = 1.0
@@ -139,13 +140,14 @@ class Scenario(BaseModel):
         return Timing(self.time_limit, self.belief_step, self.physics_step)
 
     def place(self) -> tuple[FloorPlan, CellMap]:
-        """Read the plan and cut it."""
+        """Read the plan, and cut it or read its cells."""
         plan = read_plan(
             self.plan, resolution=self.resolution, level=self.level, units=self.units, structure=self.structure
         )
-        return plan, convex_cells(
-            plan, method=self.method, radius=self.clearance or max(self.radius, self.evader_radius)
-        )
+        radius = self.clearance or max(self.radius, self.evader_radius)
+        if self.cells is not None:
+            return plan, read_cells(Path(self.cells), plan, radius=radius)
+        return plan, convex_cells(plan, method=self.method, radius=radius)
 
     def as_dict(self) -> dict[str, Any]:
         """Return what a scenario file would hold: plain values, a planner's defaults told, no keys that mean "none"."""
@@ -177,10 +179,11 @@ def read_scenario(path: Path | None, flags: dict[str, Any]) -> Scenario:
         If the file cannot be read, or a key or value is wrong; the message names it and the nearest valid one.
     """
     told = {} if path is None else _load(path)
-    if path is not None and "plan" not in flags:
-        beside = path.parent / str(told.get("plan", ""))
-        if beside.is_file():
-            told["plan"] = str(beside)
+    for key in ("plan", "cells"):
+        if path is not None and key in told and key not in flags:
+            beside = path.parent / str(told[key])
+            if beside.is_file():
+                told[key] = str(beside)
     for key in told:
         if key not in Scenario.model_fields:
             raise ScenarioError(f"{path}: unknown key {key!r}; {nearest(key, Scenario.model_fields)}")
@@ -190,10 +193,10 @@ def read_scenario(path: Path | None, flags: dict[str, Any]) -> Scenario:
         raise ScenarioError(_sentence(exc, path, flags)) from exc
     if scenario.plan.endswith(".toml"):
         raise ScenarioError(f"{scenario.plan} is a scenario, not a floor plan: give it with --scenario.")
-    file = Path(scenario.plan)
-    if scenario.plan in bundled_names() or not file.is_file():
-        return scenario
-    return scenario.model_copy(update={"plan": str(file.resolve())})
+    named = bundled_names()
+    told_files = {"plan": scenario.plan, "cells": scenario.cells}
+    files = {key: Path(told) for key, told in told_files.items() if told is not None and told not in named}
+    return scenario.model_copy(update={key: str(file.resolve()) for key, file in files.items() if file.is_file()})
 
 
 def _load(path: Path) -> dict[str, Any]:

@@ -11,29 +11,38 @@ __all__ = ["Streams", "trial_seeds"]
 
 @dataclass(frozen=True, slots=True)
 class Streams:
-    """The streams of one pursuit.
+    """The streams of one pursuit; each begins anew whenever it is asked for.
 
     Attributes
     ----------
-    placing : Generator
-        Where the evader starts.
-    moving : Generator
-        Where it goes.
-    deciding : Generator
-        The planner's.
-    noticing : Generator
-        How long robots look at the evader before they notice it.
+    seed : int
+        What they come from.
     """
 
-    placing: np.random.Generator
-    moving: np.random.Generator
-    deciding: np.random.Generator
-    noticing: np.random.Generator
+    seed: int
 
-    @classmethod
-    def of(cls, seed: int) -> Streams:
-        """Make the streams of a seed."""
-        return cls(*(np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4)))
+    @property
+    def placing(self) -> np.random.Generator:
+        """Where the evader starts."""
+        return self._stream(0)
+
+    @property
+    def moving(self) -> np.random.Generator:
+        """Where it goes."""
+        return self._stream(1)
+
+    @property
+    def deciding(self) -> np.random.Generator:
+        """The planner's."""
+        return self._stream(2)
+
+    @property
+    def noticing(self) -> np.random.Generator:
+        """How long robots look at the evader before they notice it."""
+        return self._stream(3)
+
+    def _stream(self, number: int) -> np.random.Generator:
+        return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(number,)))
 
 
 def trial_seeds(seed: int, trials: int) -> list[int]:

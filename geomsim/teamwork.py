@@ -135,7 +135,7 @@ class Teamwork:
         while (done := walkers.done).any():
             for run in np.flatnonzero(done.reshape(self._shape).any(axis=1)).tolist():
                 self._decide(run, time, done)
-        self._world.step(walkers.wanted(at, velocity, dt), dt)
+        self._world.step(walkers.wanted(dt), dt)
         vx, vy = self._world.velocities.T
         course = np.where(np.hypot(vx, vy) > 1e-3, np.arctan2(vy, vx), self.headings.reshape(-1))
         self.headings = course.reshape(self._shape)

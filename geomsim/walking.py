@@ -159,16 +159,22 @@ class Walkers:
     def __init__(self, speeds: NDArray[np.float64], starts: Sequence[Route]) -> None:
         k = len(starts)
         self.speeds = np.array(speeds, dtype=np.float64)
+        self._squares = self.speeds**2
         self.aim, self.idle, self._length, self._crossing = np.zeros(k), np.zeros(k), np.zeros(k), np.zeros(k)
         self._begins, self.ends = np.zeros(k, dtype=np.int32), np.zeros(k, dtype=np.int32)
-        # polylines, padded to the longest one met so far: points, ways to them, and metres of x, y per metre of way
+        # polylines, padded to the longest one met so far: points, ways to them, metres of x and y a metre of way
         self._points, self._slopes = np.zeros((k, 2, 2)), np.zeros((k, 2, 2))
-        self._marks = np.full((k, 2), np.inf)
-        self._rows = np.arange(k)
+        self._marks = np.full((k, 3), np.inf)
+        # the piece of the polyline that the aim is on: its number, first point, way to that, slopes, way to its end
+        self._piece = np.zeros(k, dtype=np.intp)
+        self._corner, self._slope = np.zeros((k, 2)), np.zeros((k, 2))
+        self._from, self._until = np.zeros(k), np.zeros(k)
         for i, route in enumerate(starts):
             self._follow(i, route)
+        self._turn(np.arange(k))
         # where the bodies should be now and one step from now
-        self._now = self._next = self._points[:, 0].copy()
+        self._now = self._next = self._corner.copy()
+        self._coasting = self._now
         self.cells = self._next_cells = self._begins.copy()
 
     @property
@@ -193,43 +199,77 @@ class Walkers:
 
     def advance(self, positions: NDArray[np.float64], velocities: NDArray[np.float64], dt: float) -> None:
         """Move the aims on by one step, but for bodies that are held up; both arrays of shape (K, 2)."""
-        off = positions + velocities * dt - self._next
-        going = np.hypot(off[:, 0], off[:, 1]) <= self.PATIENCE
-        self.aim += np.where(going, self.speeds * dt, 0.0)
-        self.idle = np.where(going, 0.0, self.idle + dt)
+        self._coasting = positions + velocities * dt
+        going = _squares(self._coasting - self._next) <= self.PATIENCE**2
+        if going.all():
+            self.aim += self.speeds * dt
+            self.idle[:] = 0.0
+        else:
+            self.aim += np.where(going, self.speeds * dt, 0.0)
+            self.idle = np.where(going, 0.0, self.idle + dt)
 
-    def wanted(self, positions: NDArray[np.float64], velocities: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+    def wanted(self, dt: float) -> NDArray[np.float64]:
         """Return the velocities that bring the bodies to the aims, at most their speeds; (K, 2), metres a second.
 
         To be asked once a step, after :meth:`advance` and before the world's step.
         """
-        leg = np.count_nonzero(self._marks[:, 1:] <= self.aim[:, np.newaxis], axis=1)
-        along = self.aim - self._marks[self._rows, leg]
-        aims = self._points[self._rows, leg] + along[:, np.newaxis] * self._slopes[self._rows, leg]
+        over = self.aim >= self._until
+        if over.any():
+            self._turn(np.flatnonzero(over))
+        aims = self._corner + (self.aim - self._from)[:, np.newaxis] * self._slope
         self._now, self._next = self._next, aims
         self.cells, self._next_cells = self._next_cells, self.aimed_cells
-        wanted: NDArray[np.float64] = (aims - (positions + velocities * dt)) / dt
-        fast = np.hypot(wanted[:, 0], wanted[:, 1])
-        over = fast > self.speeds
+        wanted: NDArray[np.float64] = (aims - self._coasting) / dt
+        fast = _squares(wanted)
+        over = fast > self._squares
         if over.any():
-            wanted[over] *= (self.speeds[over] / fast[over])[:, np.newaxis]
+            wanted[over] *= np.sqrt(self._squares[over] / fast[over])[:, np.newaxis]
         return wanted
 
     def keep(self, which: NDArray[np.intp]) -> None:
         """Go on with some of the walkers only, given by their indices in rising order."""
-        for name in ("speeds", "aim", "idle", "_length", "_crossing", "_begins", "ends", "_points", "_slopes"):
+        for name in (
+            "speeds",
+            "_squares",
+            "aim",
+            "idle",
+            "_length",
+            "_crossing",
+            "_begins",
+            "ends",
+            "cells",
+            "_next_cells",
+        ):
             setattr(self, name, getattr(self, name)[which])
-        for name in ("_marks", "_now", "_next", "cells", "_next_cells"):
+        for name in ("_piece", "_corner", "_slope", "_from", "_until", "_now", "_next", "_coasting"):
             setattr(self, name, getattr(self, name)[which])
-        self._rows = np.arange(len(which))
+        for name in ("_points", "_slopes", "_marks"):
+            setattr(self, name, getattr(self, name)[which])
 
     def _follow(self, k: int, route: Route) -> None:
         n = len(route.marks)
-        if n > self._marks.shape[1]:
-            more = ((0, 0), (0, n - self._marks.shape[1]))
+        if n >= self._marks.shape[1]:
+            more = ((0, 0), (0, n + 1 - self._marks.shape[1]))
             self._points, self._slopes = (np.pad(a, (*more, (0, 0))) for a in (self._points, self._slopes))
             self._marks = np.pad(self._marks, more, constant_values=np.inf)
         self._points[k, :n], self._slopes[k, :n] = route.points, route.slopes
         self._marks[k, :n], self._marks[k, n:] = route.marks, np.inf
         self._length[k], self._crossing[k] = route.length, route.crossing
         self._begins[k], self.ends[k] = route.cells
+        self._piece[k], self._until[k] = -1, -np.inf
+
+    def _turn(self, which: NDArray[np.intp]) -> None:
+        """Go on to the pieces that the aims of some walkers are on."""
+        piece, left = self._piece, which
+        while len(left):
+            piece[left] += 1
+            left = left[self.aim[left] >= self._marks[left, piece[left] + 1]]
+        at = piece[which]
+        self._corner[which], self._slope[which] = self._points[which, at], self._slopes[which, at]
+        self._from[which], self._until[which] = self._marks[which, at], self._marks[which, at + 1]
+
+
+def _squares(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the squared lengths of K vectors; element by element, so that K changes no bit of any."""
+    each = vectors * vectors
+    return each[:, 0] + each[:, 1]

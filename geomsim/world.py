@@ -52,6 +52,7 @@ class World:
             disc = pymunk.Circle(body, radius)
             disc.filter = _BODY
             self.space.add(body, disc)
+        self._least = float(self.radii.min())
         self._bodies = list(self.space.bodies)
         self._count = len(self.radii)
         self._order: NDArray[np.intp] | None = None  # row of each body in the space's own order, if that is another
@@ -80,21 +81,24 @@ class World:
         GeomsimError
             If a body would move further than its radius, where a wall might be missed.
         """
-        reach = np.hypot(wanted[:, 0], wanted[:, 1]) * dt
+        if 2.0 * float(np.abs(wanted).max()) * dt > self._least:  # more than that no body can move
+            self._check(np.hypot(wanted[:, 0], wanted[:, 1]) * dt, dt)
+        if self._order is None:
+            np.subtract(wanted, self.velocities, out=self._forces[:-1])
+            self._forces[:-1] /= dt
+        else:
+            self._forces[self._order] = (wanted - self.velocities) / dt
+        batch.set_space_bodies(self.space, batch.BodyFields.FORCE, self._set)
+        self.space.step(dt)
+        self._read()
+
+    def _check(self, reach: NDArray[np.float64], dt: float) -> None:
         if np.any(reach > self.radii):
             k = int(np.argmax(reach / self.radii))
             raise GeomsimError(
                 f"A body of radius {self.radii[k]:g} m would move {reach[k]:g} m in one physics step of {dt:g} s and "
                 "might miss a wall: make the step shorter, the body slower or larger."
             )
-        forces = (wanted - self.velocities) / dt
-        if self._order is None:
-            self._forces[:-1] = forces
-        else:
-            self._forces[self._order] = forces
-        batch.set_space_bodies(self.space, batch.BodyFields.FORCE, self._set)
-        self.space.step(dt)
-        self._read()
 
     def sees(self, eye: NDArray[np.float64], target: NDArray[np.float64]) -> bool:
         """Whether no wall is on the straight way between two points; bodies do not block it."""

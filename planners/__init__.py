@@ -33,7 +33,7 @@ from planners.motion import (
     fit_motion,
 )
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
-from planners.registry import PLANNERS, PlannerEntry, make_planner
+from planners.registry import PLANNERS, PlannerEntry, make_planner, parse_method
 from planners.rollout import Rollout
 from planners.team import PlannerError
 from planners.walks import TooLargeError
@@ -88,6 +88,7 @@ __all__ = [
     "measured_range",
     "merge_evaders",
     "observe",
+    "parse_method",
     "point_belief",
     "predict",
     "read_edge_list",

@@ -240,17 +240,21 @@ class _Beam:
         self, pursuer: int, parent: NDArray[np.intp], move: NDArray[np.intp], done: NDArray[np.intp]
     ) -> NDArray[np.float64]:
         """Return for each choice how many steps what is there now is away from the nearest pursuer, on average."""
-
-        def apart(i: int, move: NDArray[np.intp], done: NDArray[np.intp]) -> NDArray[np.float64]:
-            table = self.model.moves[i]
-            return np.asarray(self.search._reach[i][table.target[move]] + (table.steps[move] - done)[:, np.newaxis])
-
-        others = np.full(self.free.shape, np.inf)
-        for i in range(self.move.shape[1]):
-            if i != pursuer:
-                others = np.minimum(others, apart(i, self.move[:, i], self.done[:, i]))
-        nearest = np.minimum(others[parent], apart(pursuer, move, done))
+        nearest = self._apart(pursuer, move, done)
+        others = [i for i in range(self.move.shape[1]) if i != pursuer]
+        if others:
+            least = np.minimum.reduce([self._apart(i, self.move[:, i], self.done[:, i]) for i in others])
+            np.minimum(nearest, least[parent], out=nearest)
         return np.asarray(np.einsum("kn,kn->k", self.free[parent], nearest))
+
+    def _apart(self, pursuer: int, move: NDArray[np.intp], done: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Return how many steps a pursuer is away from seeing each state, shape (K, N)."""
+        table = self.model.moves[pursuer]
+        apart: NDArray[np.float64] = self.search._reach[pursuer][table.target[move]]
+        rest = table.steps[move] - done
+        if rest.any():
+            apart += rest[:, np.newaxis]
+        return apart
 
     def _loyal_choice(
         self, pursuer: int, arrived: NDArray[np.bool_], parent: NDArray[np.intp], move: NDArray[np.intp]

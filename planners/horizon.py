@@ -130,7 +130,7 @@ class BranchAndBound:
     """
 
     horizon: int = 8
-    nodes: int = 20_000
+    nodes: int = 5_000
     seconds: float = float("inf")
     discount: float = 1.0
     patience: int = 4

@@ -10,6 +10,7 @@ from typing import Any
 from maps import nearest
 from planners.baselines import Random, Stationary
 from planners.beam import Beam
+from planners.costs import find_cost
 from planners.coupled import Coupled
 from planners.horizon import BestResponse, BranchAndBound, Sequential
 from planners.lookahead import Decoupled
@@ -17,7 +18,7 @@ from planners.policy import Planner
 from planners.rollout import Rollout
 from planners.team import PlannerError
 
-__all__ = ["PLANNERS", "PlannerEntry", "make_planner"]
+__all__ = ["PLANNERS", "PlannerEntry", "make_planner", "parse_method"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,3 +128,29 @@ def make_planner(name: str, **parameters: Any) -> Planner:
             takes = " and ".join(entry.parameters) or "no parameter"
             raise PlannerError(f"The planner {name!r} takes {takes}; got {key} = {value!r}.")
     return entry.make(**given)
+
+
+def parse_method(method: str) -> Planner:
+    """Make a planner from one name that says all: ``planner``, ``planner-cost`` or ``planner-cost-depth``.
+
+    Such as ``stationary``, ``decoupled-entropy-5`` or ``coupled-distance-over-probability-1``; what is left out is
+    the planner's own default.
+
+    Raises
+    ------
+    PlannerError
+        If it begins with no planner's name, or the planner takes no cost or depth, or not this depth.
+    CostError
+        If it names no cost heuristic.
+    """
+    names = [name for name in PLANNERS if method == name or method.startswith(name + "-")]
+    if not names:
+        raise PlannerError(f"There is no method {method!r}; {nearest(method, PLANNERS)}")
+    name = max(names, key=len)
+    cost, depth = method[len(name) + 1 :], None
+    head, _, tail = cost.rpartition("-")
+    if tail.isdecimal():
+        cost, depth = head, int(tail)
+    if cost and "cost" in PLANNERS[name].parameters:
+        find_cost(cost)
+    return make_planner(name, cost=cost or None, depth=depth)

@@ -418,7 +418,7 @@ def test_a_foreign_package_of_our_names_is_refused(tmp_path: Path) -> None:
 
 
 # what a person must give, or what has no default to tell
-NO_DEFAULT = {"plan", "resolution", "units", "options"}
+NO_DEFAULT = {"plan", "resolution", "units", "options", "cells"}
 
 
 @pytest.mark.parametrize("key", [key for key in Scenario.model_fields if key not in NO_DEFAULT])

@@ -52,7 +52,7 @@ def test_a_walker_keeps_its_speed(house: CellMap, speed: float, dt: float) -> No
         walkers.advance(world.positions, world.velocities, dt)
         while walkers.done[0] and todo:
             walkers.take(0, todo.pop(0))
-        world.step(walkers.wanted(world.positions, world.velocities, dt), dt)
+        world.step(walkers.wanted(dt), dt)
         assert np.hypot(*world.velocities[0]) <= speed + 1e-9
 
 
@@ -62,7 +62,7 @@ def test_a_stay_takes_its_time(house: CellMap) -> None:
     for _ in range(19):
         walkers.advance(here, still, 0.1)
         assert not walkers.done[0]
-        assert walkers.wanted(here, still, 0.1) == pytest.approx(np.zeros((1, 2)))
+        assert walkers.wanted(0.1) == pytest.approx(np.zeros((1, 2)))
     assert walkers.time_left == pytest.approx([0.1])
     walkers.advance(here, still, 0.1)
     walkers.advance(here, still, 0.1)
@@ -75,7 +75,7 @@ def test_a_body_that_is_held_up_is_waited_for(house: CellMap) -> None:
     here, still = house.checkpoints[:1], np.zeros((1, 2))
     for _ in range(30):
         walkers.advance(here, still, 0.1)
-        wanted = walkers.wanted(here, still, 0.1)
+        wanted = walkers.wanted(0.1)
     assert walkers.aim[0] < 0.5
     assert walkers.idle[0] > 2.0
     assert np.hypot(*wanted[0]) > 0.5
@@ -105,7 +105,7 @@ def test_walkers_keep_out_of_each_others_way(house: CellMap) -> None:
             for i, m in enumerate(members):
                 while walkers.done[i] and todo[m]:
                     walkers.take(i, todo[m].pop(0))
-            previous, at = at, at + 0.1 * walkers.wanted(at, np.zeros_like(at), 0.1)
+            previous, at = at, at + 0.1 * walkers.wanted(0.1)
             for i, m in enumerate(members):
                 tracks[m].append(at[i])
         return tracks

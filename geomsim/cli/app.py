@@ -31,6 +31,7 @@ app.command(
 )
 app.command("geomsim.cli.predict:predict", name="predict", help="Exact expected capture time, without sampling.")
 app.command("geomsim.cli.compare:compare", name="compare", help="Many methods, many trials, the same evaders.")
+app.command("geomsim.cli.reproduce:reproduce", name="reproduce", help="The paper's experiments, as a page.")
 app.command("geomsim.cli.render:render", name="render", help="Pictures and video from a saved episode.")
 app.command("geomsim.cli.convert:convert", name="convert", help="A floor plan from one format into another.")
 app.command("geomsim.cli.listing:maps", name="maps", help="The bundled floor plans.")

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import time
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 from geomsim.cli.console import say, say_json
 from geomsim.cli.flags import JsonFlag, OutFlag, PlanFlags
+
+if TYPE_CHECKING:
+    from discretize import CellMap, CellReport, Certificate
 
 __all__ = ["discretize"]
 
@@ -16,7 +20,10 @@ __all__ = ["discretize"]
 def discretize(
     plan: str,
     *,
-    method: Annotated[str, Parameter(help="How to cut: exact.")] = "exact",
+    method: Annotated[str, Parameter(help="How to cut: exact, quine-mccluskey or visibility.")] = "exact",
+    cells: Annotated[
+        Path | None, Parameter(help="Cells that this command wrote and a person may have changed, to be checked.")
+    ] = None,
     radius: Annotated[float, Parameter(help="Radius of the robot that must fit through a portal, metres.")] = 0.2,
     picture: Annotated[bool, Parameter(help="Draw the picture.")] = True,
     out: OutFlag = None,
@@ -32,23 +39,33 @@ def discretize(
     """
     from json import dumps
 
-    from discretize import cells_text, check_cells, convex_cells
+    from discretize import cells_text, certify, check_cells, convex_cells, read_cells
     from geomsim.files import default_folder, results_folder, write_text
 
     begun = time.perf_counter()
     place = flags.read(plan)
-    cells = convex_cells(place, method=method, radius=radius)
+    made = read_cells(cells, place, radius=radius) if cells else convex_cells(place, method=method, radius=radius)
     seconds = time.perf_counter() - begun
-    report = check_cells(cells)
+    result = _result(made, check_cells(made), certify(made), seconds)
     with results_folder(out or default_folder(place.name, "cells")) as folder:
         files = {"cells": folder / "cells.geojson", "report": folder / "report.json"}
-        write_text(files["cells"], cells_text(cells))
+        write_text(files["cells"], cells_text(made))
         if picture:
             from geomsim.drawing import write_cells_picture
 
-            files["picture"] = write_cells_picture(cells, folder / "cells.png")
-    result = {
-        "plan": place.name,
+            files["picture"] = write_cells_picture(made, folder / "cells.png")
+        result["files"] = {kind: str(path) for kind, path in files.items()}
+        write_text(files["report"], dumps(result, indent=1) + "\n")
+    if json:
+        say_json(result)
+    else:
+        _tell(result, radius)
+    return 0
+
+
+def _result(cells: CellMap, report: CellReport, certificate: Certificate, seconds: float) -> dict[str, Any]:
+    return {
+        "plan": cells.plan.name,
         "method": cells.method,
         "cells": len(cells),
         "portals": len(cells.portals),
@@ -61,25 +78,33 @@ def discretize(
         "graph_components": report.graph_components,
         "pockets": list(report.pockets),
         "blocked_doors": list(report.blocked_doors),
+        "certificate": {
+            "reflex_bound": certificate.reflex_bound,
+            "hidden_bound": certificate.hidden_bound,
+            "exact": certificate.exact,
+            "mutual_sight": certificate.mutual_sight,
+        },
         "problems": list(report.problems),
         "notes": list(report.notes),
-        "repairs": [repair.message for repair in place.repairs],
+        "repairs": [repair.message for repair in cells.plan.repairs],
         "seconds": seconds,
-        "files": {kind: str(path) for kind, path in files.items()},
     }
-    write_text(files["report"], dumps(result, indent=1) + "\n")
-    if json:
-        say_json(result)
-        return 0
-    say(f"{place.name}: {len(cells)} cells, {len(cells.portals)} portals, {report.area:.1f} m2, {seconds:.2f} s")
-    say(f"covered {report.coverage:.9f}, overlap {report.overlap:.1e}, least convexity {report.convexity:.6f}")
-    say(f"connected parts of the free space: {report.free_components}, of the cell graph: {report.graph_components}")
-    if report.pockets:
-        say(f"cells that a robot of radius {radius:g} m cannot enter: {len(report.pockets)}")
-    if report.blocked_doors:
-        say(f"doors that it cannot pass: {', '.join(map(str, report.blocked_doors))}")
-    for sentence in (*report.problems, *report.notes, *(repair.message for repair in place.repairs)):
+
+
+def _tell(told: dict[str, Any], radius: float) -> None:
+    size = f"{told['cells']} cells, {told['portals']} portals, {told['area']:.1f} m2"
+    say(f"{told['plan']}: {size}, {told['seconds']:.2f} s")
+    say(f"covered {told['coverage']:.9f}, overlap {told['overlap']:.1e}, least convexity {told['convexity']:.6f}")
+    say(f"connected parts of the free space: {told['free_components']}, of the cell graph: {told['graph_components']}")
+    bounds = told["certificate"]
+    at_least = max(bounds["reflex_bound"], bounds["hidden_bound"])
+    say(f"no strictly convex cutting has fewer than {at_least} cells; the exact method makes {bounds['exact']}")
+    say(f"least share of a cell that a place in it sees of the others: {bounds['mutual_sight']:.3f}")
+    if told["pockets"]:
+        say(f"cells that a robot of radius {radius:g} m cannot enter: {len(told['pockets'])}")
+    if told["blocked_doors"]:
+        say(f"doors that it cannot pass: {', '.join(map(str, told['blocked_doors']))}")
+    for sentence in (*told["problems"], *told["notes"], *told["repairs"]):
         say(f"  {sentence}")
-    for kind, path in files.items():
+    for kind, path in told["files"].items():
         say(f"{kind + ':':<10} {path}")
-    return 0

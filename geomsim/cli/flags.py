@@ -114,6 +114,8 @@ class ScenarioFlags(PlanFlags):
         How fast they believe it to be, metres a second. [default: as fast as it is]
     method
         How the plan is cut into cells. [default: exact]
+    cells
+        GeoJSON of cells that `geomsim discretize` wrote and a person may have changed, instead of a method.
     clearance
         Radius of the body for which portals and routes are made, metres. [default: the largest radius]
     time_limit
@@ -144,6 +146,7 @@ class ScenarioFlags(PlanFlags):
     motion: str | None = None
     motion_speed: float | None = None
     method: str | None = None
+    cells: str | None = None
     clearance: float | None = None
     time_limit: float | None = None
     belief_step: float | None = None

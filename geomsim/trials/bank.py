@@ -66,7 +66,7 @@ class Bank:
         self._experiment = experiment
         self.trials = np.array(trials, dtype=np.intp)
         hideouts = [experiment.hideouts[k] for k in trials]
-        chance = [Streams.of(experiment.seeds[k]).moving for k in trials]
+        chance = [Streams(experiment.seeds[k]).moving for k in trials]
         cells = experiment.cells
         self._quarry = Quarry(cells.plan.walls, Routes(cells), experiment.evader, hideouts, chance)
         self._steps = 0

@@ -116,7 +116,7 @@ class Experiment:
     @cached_property
     def hideouts(self) -> list[int]:
         """The cell in which the evader of each trial starts, counted from 0."""
-        return [place_evader(self.cells, self.evader, self.starts, Streams.of(seed).placing) for seed in self.seeds]
+        return [place_evader(self.cells, self.evader, self.starts, Streams(seed).placing) for seed in self.seeds]
 
     def team_for(self, method: int) -> Team:
         """Return the team with the planner of a method."""
@@ -124,7 +124,7 @@ class Experiment:
 
     def patience(self, trials: NDArray[np.intp]) -> NDArray[np.float64]:
         """Attention at which each robot notices the evader of each of some trials, shape (K, P)."""
-        draws = [Streams.of(self.seeds[k]).noticing.exponential(size=self.team.pursuers) for k in trials.tolist()]
+        draws = [Streams(self.seeds[k]).noticing.exponential(size=self.team.pursuers) for k in trials.tolist()]
         return np.array(draws).reshape(len(trials), self.team.pursuers)
 
     def row(self, method: int, trial: int, step: int, **found: Any) -> Row:

@@ -13,17 +13,39 @@ from geomsim.pursuit import believed_capture
 from geomsim.seeds import Streams
 from geomsim.trials.experiment import Experiment
 from geomsim.trials.statistics import Survival
-from planners import SearchGraph, SearchProblem, TooLargeError, predict, uniform_belief
+from planners import (
+    Planner,
+    Policy,
+    Prediction,
+    SearchGraph,
+    SearchProblem,
+    TooLargeError,
+    predict,
+    uniform_belief,
+)
 
 __all__ = ["Forecast", "forecast"]
 
 #: a pursuit is followed until it has ended with all but this probability; beyond it goes on at the same rate
 _RESIDUE = 1e-4
 
+#: runs of a team in the cell model where its planner draws random numbers and its Markov chain is too large
+_SAMPLES = 20
+
+
+@dataclass(frozen=True, slots=True)
+class _Unknown:
+    """A planner whose kind is hidden, so that its decisions are followed whatever it is."""
+
+    planner: Planner
+
+    def solve(self, problem: SearchProblem, rng: np.random.Generator) -> Policy:
+        return self.planner.solve(problem, rng)
+
 
 @dataclass(frozen=True, slots=True)
 class Forecast:
-    """The exact capture time in the cell model.
+    """The capture time in the cell model.
 
     Attributes
     ----------
@@ -48,26 +70,35 @@ class Forecast:
 
 
 def forecast(experiment: Experiment, method: int) -> Forecast | None:
-    """Predict a method exactly, with what its team believes; None where the cell model has no finite answer.
+    """Predict a method in the cell model, with what its team believes; None where that has no finite answer.
 
-    That is so where the team believes that it may never capture, or is too large a random walk for its Markov chain.
+    The answer is exact, but for a planner that draws random numbers and whose Markov chain is too large: then it is
+    the mean of 20 runs, each exact. There is none where the team believes that it may never capture.
     """
     graph = SearchGraph.from_cells(experiment.cells)
     team, timing, starts = experiment.team_for(method), experiment.timing, experiment.starts
     speeds = (team.speed,) * team.pursuers
     problem = SearchProblem(graph, experiment.motion, believed_capture(team, timing), speeds, timing.belief_step)
     belief = uniform_belief(graph, exclude=starts, component=int(graph.component[starts[0]]))
-    rng, steps = Streams.of(experiment.seeds[0]).deciding, math.ceil(timing.limit / timing.belief_step)
+    seed, steps = experiment.seeds[0], max(1, math.ceil(timing.limit / timing.belief_step))
+
+    def ask(planner: Planner, rng: np.random.Generator, residue: float) -> Prediction:
+        return predict(problem, planner, [starts], rng, belief=belief, residue=residue, longest=steps)[0]
+
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # of a linear system without a solution, seen below
+        warnings.simplefilter("ignore")  # of a linear system without a solution, seen below
         try:
-            (told,) = predict(
-                problem, team.planner, [starts], rng, belief=belief, residue=_RESIDUE, longest=max(1, steps)
-            )
-        except (TooLargeError, OverflowError, ValueError):
+            told = [ask(team.planner, Streams(seed).deciding, _RESIDUE)]
+        except TooLargeError:
+            chance = Streams(seed).deciding.spawn(_SAMPLES)
+            told = [ask(_Unknown(team.planner), rng, 10 * _RESIDUE) for rng in chance]
+        except (OverflowError, ValueError):
             return None
-    if not math.isfinite(told.expected_time) or told.expected_time < 0:
+    mean = float(np.mean([one.expected_time for one in told]))
+    if not math.isfinite(mean) or mean < 0:
         return None
-    whole = len(told.survival) > steps
-    mean = float(told.survival[:steps].sum()) * timing.belief_step if whole else told.expected_time
-    return Forecast(mean, told.survival, timing.belief_step)
+    length = max(len(one.survival) for one in told)
+    free = np.mean([np.pad(one.survival, (0, length - len(one.survival)), mode="edge") for one in told], axis=0)
+    if length > steps:
+        mean = float(free[:steps].sum()) * timing.belief_step
+    return Forecast(mean, free, timing.belief_step)

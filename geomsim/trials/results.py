@@ -38,7 +38,7 @@ class MethodRun:
     seconds_per_decision : float
         The same for each decision of the planner, the belief and the bodies included.
     forecast : Forecast or None
-        What the cell model says exactly.
+        What the cell model says.
     """
 
     runs: int
@@ -58,7 +58,7 @@ class MethodSummary:
     observed : Sample
         What the trials say.
     predicted : float or None
-        Exact mean capture time in the cell model, seconds; None where that has no finite answer.
+        Mean capture time in the cell model, seconds; None where that has no finite answer.
     gap : float or None
         Largest difference between the predicted and the observed share captured, over time.
     difference : Difference or None

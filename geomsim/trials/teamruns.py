@@ -88,7 +88,7 @@ def run_team(experiment: Experiment, method: int, runs: Sequence[int], steps: in
 
     begun, grid = clock.perf_counter(), WallGrid.of(experiment.cells.plan.walls)
     timing, team = experiment.timing, experiment.team_for(method)
-    deciding = [Streams.of(experiment.seeds[run]).deciding for run in runs]
+    deciding = [Streams(experiment.seeds[run]).deciding for run in runs]
     fresh = [rng.bit_generator.state for rng in deciding]
     believed = believed_capture(team, timing)
     work = Teamwork(

@@ -26,7 +26,7 @@ __all__ = ["Progress", "Work"]
 _FIRST_ROUND, _FURTHER = 75.0, 4
 
 #: most evaders in one space: with more the broad phase costs more than it saves
-_BLOCK = 250
+_BLOCK = 500
 
 #: trials in a task of the separate engine
 _EPISODES = 8

@@ -9,7 +9,9 @@ from planners import (
     AreaSpeedDegree,
     ConformanceError,
     CostError,
+    Coupled,
     Decision,
+    Decoupled,
     Planner,
     PlannerError,
     Random,
@@ -21,6 +23,7 @@ from planners import (
     UniformMotion,
     check_policy,
     make_planner,
+    parse_method,
 )
 
 
@@ -134,3 +137,33 @@ def test_parameters_reach_the_planner():
 def test_bad_choices_are_named(name, parameters, error, message):
     with pytest.raises(error, match=message):
         make_planner(name, **parameters)
+
+
+@pytest.mark.parametrize(
+    ("method", "planner"),
+    [
+        ("stationary", Stationary()),
+        ("decoupled", Decoupled()),
+        ("decoupled-entropy-5", Decoupled("entropy", 5)),
+        ("decoupled-target-probability", Decoupled("target-probability")),
+        ("decoupled-3", Decoupled(depth=3)),
+        ("coupled-distance-over-probability-1", Coupled("distance-over-probability", 1)),
+        ("branch-and-bound", PLANNERS["branch-and-bound"].make()),
+    ],
+)
+def test_a_method_is_made_from_one_name(method, planner):
+    assert parse_method(method) == planner
+
+
+@pytest.mark.parametrize(
+    ("method", "error", "message"),
+    [
+        ("decoupel", PlannerError, "no method 'decoupel'; did you mean 'decoupled'"),
+        ("decoupled-entropie-5", CostError, "no cost heuristic 'entropie'; did you mean 'entropy'"),
+        ("decoupled-entropy-0", PlannerError, "at least 1; got 0"),
+        ("stationary-entropy", PlannerError, "'stationary' takes no parameter; got cost = 'entropy'"),
+    ],
+)
+def test_a_bad_method_is_named(method, error, message):
+    with pytest.raises(error, match=message):
+        parse_method(method)
