@@ -1,0 +1,1 @@
+"""Few, room- and hallway-like cells, convex up to a stated tolerance."""

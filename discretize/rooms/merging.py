@@ -1,0 +1,169 @@
+"""Join faces while the union stays nearly convex and the neck between the two is wide, in many random orders.
+
+Two rooms that a thin wall parts fill their convex hull well, so the hull alone would join them; that is why the shared
+boundary is also compared with the width of both sides.
+"""
+
+import heapq
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from discretize.rooms.faces import Border, Faces
+from numpy.typing import NDArray
+
+__all__ = ["Limits", "Region", "Regions"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a cell may look like.
+
+    Attributes
+    ----------
+    convexity : float
+        Least area of a cell as a share of its convex hull's.
+    gate : float
+        Least length of a boundary that is dissolved, as a share of the extent, along it, of the smaller side.
+    """
+
+    convexity: float
+    gate: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Region:
+    """A union of faces.
+
+    Attributes
+    ----------
+    faces : frozenset of int
+        Which ones.
+    area : float
+        Square metres.
+    hull : ndarray, shape (k, 2)
+        Corners of its convex hull, metres.
+    hull_area : float
+        Square metres.
+    """
+
+    faces: frozenset[int]
+    area: float
+    hull: Array
+    hull_area: float
+
+    @property
+    def convexity(self) -> float:
+        """Area as a share of the convex hull's."""
+        return self.area / self.hull_area
+
+    def extent(self, direction: Array) -> float:
+        """Length of its shadow on a line, metres."""
+        return float(np.ptp(self.hull @ direction))
+
+
+class Regions:
+    """The faces of a plan and every union of them met so far; unions are computed once.
+
+    Parameters
+    ----------
+    faces : Faces
+        What to join.
+    limits : Limits
+        What a union may look like.
+    """
+
+    def __init__(self, faces: Faces, limits: Limits) -> None:
+        self._faces = faces
+        self._limits = limits
+        hulls = shapely.convex_hull(faces.polygons)
+        self.single = [
+            Region(frozenset([k]), float(p.area), shapely.get_coordinates(h)[:-1], float(h.area))
+            for k, (p, h) in enumerate(zip(faces.polygons, hulls, strict=True))
+        ]
+        self.pool: dict[frozenset[int], Region] = {r.faces: r for r in self.single}
+        self._tried: dict[tuple[frozenset[int], frozenset[int]], tuple[Region | None, float]] = {}
+
+    def merge(self, rng: np.random.Generator, noise: float) -> list[Region]:
+        """Join faces greedily, best first, until nothing can be joined; every union made enters the pool.
+
+        Parameters
+        ----------
+        rng : numpy.random.Generator
+            Shuffles the order.
+        noise : float
+            Standard deviation of what is added to each union's merit; 0 gives the plain greedy order.
+        """
+        alive: dict[int, Region] = dict(enumerate(self.single))
+        near: dict[int, dict[int, Border]] = {k: {} for k in alive}
+        for (i, j), border in self._faces.borders.items():
+            near[i][j] = near[j][i] = border
+        barred: dict[int, set[int]] = {k: set() for k in alive}
+        for i, j in self._faces.barred:
+            barred[i].add(j)
+            barred[j].add(i)
+        heap: list[tuple[float, int, int]] = []
+
+        def offer(pairs: list[tuple[int, int]]) -> None:
+            pairs = [(i, j) for i, j in pairs if j not in barred[i]]
+            found = self._unions([(alive[i], alive[j], near[i][j]) for i, j in pairs])
+            shake = rng.normal(0.0, noise, len(pairs)) if noise else np.zeros(len(pairs))
+            for (i, j), (union, merit), extra in zip(pairs, found, shake.tolist(), strict=True):
+                if union is not None:
+                    heapq.heappush(heap, (-merit - extra, i, j))
+
+        offer(sorted(self._faces.borders))
+        fresh = len(alive)
+        while heap:
+            _, i, j = heapq.heappop(heap)
+            if i not in alive or j not in alive:
+                continue
+            union = self._tried[_key(alive[i], alive[j])][0]
+            if union is None:
+                continue
+            del alive[i], alive[j]
+            alive[fresh] = union
+            self.pool.setdefault(union.faces, union)
+            barred[fresh] = barred[i] | barred[j]
+            around: dict[int, Border] = {}
+            for old in (i, j):
+                for other, border in near.pop(old).items():
+                    if other in alive:
+                        around[other] = around[other] + border if other in around else border
+                        del near[other][old]
+                    if old in barred.get(other, ()):
+                        barred[other].add(fresh)
+            near[fresh] = around
+            for other, border in around.items():
+                near[other][fresh] = border
+            offer([(other, fresh) for other in sorted(around)])
+            fresh += 1
+        return list(alive.values())
+
+    def _unions(self, pairs: Sequence[tuple[Region, Region, Border]]) -> list[tuple[Region | None, float]]:
+        """Return each union, or None where it is not allowed, and its merit."""
+        todo = [(a, b, border) for a, b, border in pairs if _key(a, b) not in self._tried]
+        if todo:
+            points = [np.concatenate([a.hull, b.hull]) for a, b, _ in todo]
+            which = np.repeat(np.arange(len(todo)), [len(p) for p in points])
+            hulls = shapely.convex_hull(shapely.multipoints(np.concatenate(points), indices=which))
+            areas = shapely.area(hulls).tolist()
+            for (a, b, border), hull, hull_area in zip(todo, hulls, areas, strict=True):
+                area = a.area + b.area
+                direction = border.direction
+                gate = border.length / max(min(a.extent(direction), b.extent(direction)), 1e-9)
+                convexity = area / hull_area
+                allowed = convexity >= self._limits.convexity and (gate >= self._limits.gate or convexity >= 0.995)
+                union = None
+                if allowed:
+                    faces = a.faces | b.faces
+                    union = self.pool.get(faces) or Region(faces, area, shapely.get_coordinates(hull)[:-1], hull_area)
+                self._tried[_key(a, b)] = (union, convexity + 0.2 * min(gate, 1.0))
+        return [self._tried[_key(a, b)] for a, b, _ in pairs]
+
+
+def _key(a: Region, b: Region) -> tuple[frozenset[int], frozenset[int]]:
+    return a.faces, b.faces

@@ -1,0 +1,97 @@
+"""Cut a plan into few cells that look like rooms and hallways."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from discretize.rooms.cuts import corners, doorways, extensions, necks, ring_segments, same_cut
+from discretize.rooms.faces import GRID, Faces, arrangement
+from discretize.rooms.fitting import fit
+from discretize.rooms.merging import Limits, Region, Regions
+from discretize.rooms.rays import Walls
+from discretize.rooms.selection import partition
+from discretize.rooms.structure import structure
+from maps import FloorPlan
+from numpy.typing import NDArray
+
+__all__ = ["RoomCut", "room_cells"]
+
+Array = NDArray[np.float64]
+
+SOLID = 0.9
+GATE = 0.7
+
+
+@dataclass(frozen=True, slots=True)
+class RoomCut:
+    """A plan cut into rooms and hallways.
+
+    Attributes
+    ----------
+    cells : tuple of shapely.Polygon
+        They cover the free space and do not overlap.
+    notes : tuple of str
+        What the report should say about how they were made.
+    """
+
+    cells: tuple[shapely.Polygon, ...]
+    notes: tuple[str, ...]
+
+
+def room_cells(plan: FloorPlan, *, tolerance: float = 0.1, seed: int = 0, radius: float = 0.2, runs: int = 12) -> RoomCut:
+    space = structure(plan.space, detail=radius / 2, clutter=8 * radius)
+    doors = np.array([shapely.get_coordinates(d)[[0, -1]] for d in plan.doors]).reshape(-1, 2, 2)
+    cuts = candidate_cuts(space, doors, tolerance)
+    faces = arrangement(space, cuts, doors)
+    regions = Regions(faces, Limits(1.0 - tolerance, GATE))
+    rng = np.random.default_rng(seed)
+    for k in range(runs):
+        regions.merge(rng, 0.0 if k == 0 else 0.05 * (1 + k % 4))
+    chosen = partition(list(regions.pool.values()), len(faces), lambda r: cost(r, faces), 5.0)
+    owner = np.empty(len(faces), dtype=np.intp)
+    for k, region in enumerate(chosen):
+        owner[list(region.faces)] = k
+    cells = fit(plan.space, faces, owner, reach=3 * radius)
+    return RoomCut(tuple(cells), ())
+
+
+def cost(region: Region, faces: Faces) -> float:
+    return 1.0 + 1.0 * (1.0 - region.convexity) - 1e-4 * np.sqrt(region.area)
+
+
+def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float) -> Array:
+    """Doorways, and in each part of the plan that these leave and that is not nearly convex every other sensible cut."""
+    at = corners(space)
+    segments, ends = necks(space, at, 6.0)
+    if not len(segments):
+        segments, ends = np.empty((0, 2, 2)), np.empty((0, 2), dtype=np.intp)
+    chosen, clear = doorways(space, segments, ends, len(at))
+    certain = segments[chosen[clear]]
+    zones = arrangement(space, certain, doors).polygons
+    cuts = list(certain)
+    rest = np.delete(np.arange(len(segments)), chosen[clear])
+    maybe = segments[rest]
+    tree = shapely.STRtree(shapely.linestrings(maybe)) if len(maybe) else None
+    for zone in zones:
+        if zone.area >= (1.0 - 0.5 * tolerance) * zone.convex_hull.area and not zone.interiors:
+            continue
+        local = corners(zone)
+        if len(local) == 0:
+            continue
+        walls = Walls(ring_segments(zone))
+        found = list(extensions(walls, local, 1e3))
+        if tree is not None:
+            inner = shapely.buffer(zone, 2 * GRID)
+            k = tree.query(inner, predicate="covers")
+            found += list(maybe[np.sort(k)])
+        cuts += _distinct(found)
+    return np.array(cuts).reshape(-1, 2, 2)
+
+
+def _distinct(cuts: list[Array]) -> list[Array]:
+    cuts = sorted(cuts, key=lambda s: round(float(np.hypot(*(s[1] - s[0]))), 3))
+    kept: list[Array] = []
+    for s in cuts:
+        if np.hypot(*(s[1] - s[0])) > 0.05 and not any(same_cut(s, o) for o in kept):
+            kept.append(s)
+    return kept

@@ -1,0 +1,55 @@
+"""The best way to cover every face exactly once with pooled unions: a minimum set partition, solved exactly."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from discretize.rooms.merging import Region
+
+__all__ = ["partition"]
+
+
+def partition(pool: Sequence[Region], n: int, cost: Callable[[Region], float], seconds: float) -> list[Region]:
+    """Choose regions that cover each of ``n`` faces exactly once at least cost.
+
+    The pool must contain every single face. Faces that no region links are solved apart.
+    """
+    parent = list(range(n))
+
+    def root(x: int) -> int:
+        while parent[x] != x:
+            parent[x] = parent[parent[x]]
+            x = parent[x]
+        return x
+
+    for region in pool:
+        first, *rest = region.faces
+        for face in rest:
+            parent[root(face)] = root(first)
+    groups: dict[int, list[Region]] = {}
+    for region in pool:
+        groups.setdefault(root(next(iter(region.faces))), []).append(region)
+    chosen: list[Region] = []
+    for group in groups.values():
+        chosen += group if len(group) == 1 else _solve(group, cost, seconds)
+    return chosen
+
+
+def _solve(pool: list[Region], cost: Callable[[Region], float], seconds: float) -> list[Region]:
+    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.sparse import csc_array
+
+    pool = sorted(pool, key=lambda r: sorted(r.faces))
+    number = {face: k for k, face in enumerate(sorted(set().union(*(r.faces for r in pool))))}
+    rows = [number[face] for region in pool for face in region.faces]
+    starts = np.cumsum([0, *(len(region.faces) for region in pool)])
+    matrix = csc_array((np.ones(len(rows)), rows, starts), shape=(len(number), len(pool)))
+    result = milp(
+        [cost(region) for region in pool],
+        integrality=np.ones(len(pool)),
+        bounds=Bounds(0.0, 1.0),
+        constraints=LinearConstraint(matrix, 1.0, 1.0),
+        options={"time_limit": seconds},
+    )
+    if result.x is None:
+        return [region for region in pool if len(region.faces) == 1]
+    return [region for region, x in zip(pool, result.x, strict=True) if x > 0.5]
