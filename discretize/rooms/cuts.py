@@ -21,6 +21,9 @@ REFLEX = np.radians(8.0)  # a corner that turns by less is a bend of a wall, not
 SLACK = 0.25  # cosine by which a wall may lean towards a neck that still counts as locally shortest
 OPENS = 1.25  # a doorway: the free space is this much wider than the neck on either side of it
 CLEAR = 1.6  # as much wider as this, and nobody doubts that it is one
+ASKEW = 1.6  # a neck that carries on no wall counts as that much wider when the narrowest come first
+LONG = 0.5  # metres; a shorter wall does not show its direction well
+COLLINEAR = np.cos(np.radians(15.0))
 OFFSETS = (0.15, 0.35, 0.6)  # how far from the neck that is looked at, in widths of the neck
 
 
@@ -34,14 +37,20 @@ class Corners:
         Metres.
     before, after : ndarray, shape (N, 2)
         Unit vectors from the corner along its two walls.
+    lengths : ndarray, shape (N, 2)
+        Of these two walls, metres.
     """
 
     points: Array
     before: Array
     after: Array
+    lengths: Array
 
     def __len__(self) -> int:
         return len(self.points)
+
+    def __getitem__(self, rows: NDArray[np.bool_]) -> "Corners":
+        return Corners(self.points[rows], self.before[rows], self.after[rows], self.lengths[rows])
 
 
 def ring_segments(space: shapely.Geometry) -> Array:
@@ -54,16 +63,17 @@ def ring_segments(space: shapely.Geometry) -> Array:
 
 def corners(space: shapely.Geometry, least: float = REFLEX) -> Corners:
     """Find the reflex vertices of polygons: those that turn right by more than ``least`` radians."""
-    points, before, after = [np.empty((0, 2))], [np.empty((0, 2))], [np.empty((0, 2))]
+    found = [np.empty((0, 8))]
     for ring in shapely.get_rings(shapely.orient_polygons(space)):
         p = shapely.get_coordinates(ring)[:-1]
         incoming, outgoing = _unit(p - np.roll(p, 1, 0)), _unit(np.roll(p, -1, 0) - p)
         turn = np.arctan2(_cross(incoming, outgoing), (incoming * outgoing).sum(1))
         reflex = turn < -least
-        points.append(p[reflex])
-        before.append(-incoming[reflex])
-        after.append(outgoing[reflex])
-    return Corners(np.concatenate(points), np.concatenate(before), np.concatenate(after))
+        length = np.hypot(*(p - np.roll(p, 1, 0)).T)
+        columns = (p, -incoming, outgoing, length[:, None], np.roll(length, -1)[:, None])
+        found.append(np.concatenate(columns, axis=1)[reflex])
+    table = np.concatenate(found)
+    return Corners(table[:, :2], table[:, 2:4], table[:, 4:6], table[:, 6:])
 
 
 def necks(space: shapely.Geometry, at: Corners, reach: float, most: int = 4) -> tuple[Array, Index]:
@@ -128,17 +138,17 @@ def necks(space: shapely.Geometry, at: Corners, reach: float, most: int = 4) -> 
     return segments[keep], np.stack([v, far], axis=1)[keep]
 
 
-def doorways(space: shapely.Geometry, segments: Array, ends: Index, n: int) -> tuple[Index, NDArray[np.bool_]]:
+def doorways(space: shapely.Geometry, at: Corners, segments: Array, ends: Index) -> tuple[Index, NDArray[np.bool_]]:
     """Choose the necks that are doorways, the narrowest first, so that none crosses or repeats another.
 
     Parameters
     ----------
     space : shapely.Geometry
         Polygons.
+    at : Corners
+        Where necks start.
     segments, ends
-        What :func:`necks` returns, shortest first.
-    n : int
-        Number of corners.
+        What :func:`necks` returns.
 
     Returns
     -------
@@ -148,6 +158,8 @@ def doorways(space: shapely.Geometry, segments: Array, ends: Index, n: int) -> t
         Which of them nobody would doubt.
     """
     width = np.hypot(*(segments[:, 1] - segments[:, 0]).T)
+    order = np.argsort(width * np.where(_continues(at, segments, ends), 1.0, ASKEW), kind="stable")
+    segments, ends, width = segments[order], ends[order], width[order]
     tree = shapely.STRtree(shapely.linestrings(segments))
     rivals: list[list[int]] = [[] for _ in segments]
     for x, y in tree.query(shapely.linestrings(segments), predicate="dwithin", distance=0.5).T.tolist():
@@ -155,11 +167,11 @@ def doorways(space: shapely.Geometry, segments: Array, ends: Index, n: int) -> t
             rivals[x].append(y)
     chosen = np.zeros(len(segments), dtype=bool)
     opening = np.zeros(len(segments))
-    settled = np.zeros(n + 1, dtype=bool)
+    settled = np.zeros(len(at) + 1, dtype=bool)
     settled[-1] = True
     stone = ring_segments(space)
     # A doorway already found closes the view through it, so that a hallway between two doors is not wider there.
-    for start, stop in _classes(width):
+    for start, stop in _classes(width * np.where(_continues(at, segments, ends), 1.0, ASKEW)):
         opening[start:stop] = _opening(Walls(np.concatenate([stone, segments[chosen]])), segments[start:stop])
         for k in (start + np.flatnonzero(opening[start:stop] >= OPENS)).tolist():
             if settled[ends[k]].all():
@@ -169,7 +181,7 @@ def doorways(space: shapely.Geometry, segments: Array, ends: Index, n: int) -> t
             if repeats or not any(_crosses(segments[k], segments[r]) for r in taken):
                 settled[ends[k]] = True
                 chosen[k] = not repeats
-    return np.flatnonzero(chosen), opening[chosen] >= CLEAR
+    return order[chosen], opening[chosen] >= CLEAR
 
 
 def _classes(width: Array) -> list[tuple[int, int]]:
@@ -183,11 +195,64 @@ def _classes(width: Array) -> list[tuple[int, int]]:
 
 
 def extensions(walls: Walls, at: Corners, reach: float) -> Array:
-    """Carry both walls of each corner on into the free space until they meet a wall; shape (2 N, 2, 2)."""
-    origins = np.concatenate([at.points, at.points])
-    directions = -np.concatenate([at.before, at.after])
-    length = walls.hits(origins, directions, np.full(len(origins), reach))
-    return np.stack([origins, origins + length[:, None] * directions], axis=1)
+    """Carry the lines of walls on from each corner into the free space until they meet a wall; shape (k, 2, 2).
+
+    The lines are those of the corner's own two walls and of the main directions of all walls, as far as they leave no
+    reflex angle at the corner.
+    """
+    mains = main_directions(walls.segments)
+    origins: list[Array] = []
+    directions: list[Array] = []
+    for k in range(len(at)):
+        kept: list[Array] = []
+        own = [-wall for wall, length in zip((at.before[k], at.after[k]), at.lengths[k], strict=True) if length >= LONG]
+        for direction in [*own, *mains, *-mains]:
+            if _splits(at, k, direction) and not any(direction @ other > COLLINEAR for other in kept):
+                kept.append(direction)
+        origins += [at.points[k]] * len(kept)
+        directions += kept
+    o, d = np.array(origins).reshape(-1, 2), np.array(directions).reshape(-1, 2)
+    length = walls.hits(o, d, np.full(len(o), reach))
+    return np.stack([o, o + length[:, None] * d], axis=1)
+
+
+def main_directions(segments: Array, most: int = 4) -> Array:
+    """Return the directions in which most wall runs, at most four, as unit vectors with angles in [0, pi)."""
+    d = segments[:, 1] - segments[:, 0]
+    length = np.hypot(d[:, 0], d[:, 1])
+    doubled = (d[:, 0] + 1j * d[:, 1]) ** 2 / np.maximum(length, 1e-12)
+    left = np.ones(len(d), dtype=bool)
+    found: list[Array] = []
+    width = np.cos(2 * np.radians(6.0))
+    while len(found) < most and left.any():
+        k = int(np.argmax(np.where(left, length, -1.0)))
+        near = left & ((doubled * np.conj(doubled[k])).real >= width * length * length[k])
+        if length[near].sum() >= 0.1 * length.sum():
+            angle = 0.5 * np.angle(doubled[near].sum()) % np.pi
+            found.append(np.array([np.cos(angle), np.sin(angle)]))
+        left &= ~near
+    return np.array(found).reshape(-1, 2)
+
+
+def _splits(at: Corners, k: int, direction: Array) -> bool:
+    """Whether a ray from a corner leaves no reflex angle on either side of it."""
+    lean = np.sin(np.radians(10.0))
+    a, b = at.after[k], at.before[k]
+    # The free sector runs counterclockwise from the wall after the corner to the wall before it, by more than pi.
+    return bool(_cross2(a, direction) >= -lean and _cross2(direction, b) >= -lean and direction @ (a + b) < 0.2)
+
+
+def _continues(at: Corners, segments: Array, ends: Index) -> NDArray[np.bool_]:
+    """Whether each neck carries on, at one of its ends, the longer of the two walls that meet there."""
+    d = segments[:, 1] - segments[:, 0]
+    d = d / np.hypot(*d.T)[:, None]
+    result = np.zeros(len(d), dtype=bool)
+    for end, sign in ((0, 1.0), (1, -1.0)):
+        k = ends[:, end]
+        for wall, own, other in ((at.before, 0, 1), (at.after, 1, 0)):
+            straight = -sign * (d * wall[k]).sum(1) >= COLLINEAR
+            result |= (k >= 0) & straight & (at.lengths[k, own] > at.lengths[k, other])
+    return result
 
 
 def same_cut(s: Array, o: Array) -> bool:

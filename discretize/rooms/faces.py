@@ -13,29 +13,34 @@ Array = NDArray[np.float64]
 GRID = 1e-3  # metres; everything before the last step lies on this grid, so that noding is exact
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class Border:
     """What two faces or two unions of faces share.
 
     Attributes
     ----------
+    pieces : ndarray, shape (k, 2, 2)
+        Segments, metres.
     length : float
-        Metres.
-    xx, xy : float
-        Length times cosine and sine of twice the direction: the directions of pieces add up as doubled angles.
+        Of all of them, metres.
+    door : float
+        Length of those that lie in a doorway, metres.
     """
 
+    pieces: Array
     length: float
-    xx: float
-    xy: float
+    door: float
 
     def __add__(self, other: "Border") -> "Border":
-        return Border(self.length + other.length, self.xx + other.xx, self.xy + other.xy)
+        pieces = np.concatenate([self.pieces, other.pieces])
+        return Border(pieces, self.length + other.length, self.door + other.door)
 
     @property
     def direction(self) -> Array:
-        """Unit vector along the border."""
-        angle = 0.5 * np.arctan2(self.xy, self.xx)
+        """Unit vector along the border: directions of pieces add up as doubled angles, weighted by length."""
+        d = self.pieces[:, 1] - self.pieces[:, 0]
+        length = np.hypot(d[:, 0], d[:, 1])
+        angle = 0.5 * np.arctan2((2 * d[:, 0] * d[:, 1] / length).sum(), ((d[:, 0] ** 2 - d[:, 1] ** 2) / length).sum())
         return np.array([np.cos(angle), np.sin(angle)])
 
 
@@ -61,17 +66,18 @@ class Faces:
         return len(self.polygons)
 
 
-def arrangement(space: shapely.Geometry, cuts: Array, doors: Array) -> Faces:
+def arrangement(space: shapely.Geometry, cuts: Array, doorways: Array, doors: Array) -> Faces:
     """Cut polygons along segments.
 
     Parameters
     ----------
     space : shapely.Geometry
         Polygons on the grid.
-    cuts, doors : ndarray, shape (k, 2, 2)
-        Segments in the free space, metres; no face crosses a cut, no cell may cross a door.
+    cuts, doorways, doors : ndarray, shape (k, 2, 2)
+        Segments in the free space, metres. No face crosses any; doorways are marked in the borders, doors of the
+        source bar their two faces from each other.
     """
-    segments = np.concatenate([cuts, doors])
+    segments = np.concatenate([cuts, doorways, doors])
     lines = shapely.set_precision(shapely.linestrings(segments), GRID) if len(segments) else np.empty(0, dtype=object)
     linework = shapely.union_all([shapely.boundary(space), *lines], grid_size=GRID)
     polygons = shapely.get_parts(shapely.polygonize(shapely.get_parts(linework)))
@@ -79,10 +85,16 @@ def arrangement(space: shapely.Geometry, cuts: Array, doors: Array) -> Faces:
     polygons = polygons[shapely.intersects(space, shapely.point_on_surface(polygons))]
     middle = shapely.get_coordinates(shapely.centroid(polygons)).round(2)
     polygons = polygons[np.lexsort((shapely.area(polygons), middle[:, 1], middle[:, 0]))]
-    return _adjacency(polygons, shapely.multilinestrings(shapely.linestrings(doors)))
+    return _adjacency(polygons, _gathered(doorways), _gathered(doors))
 
 
-def _adjacency(polygons: NDArray[np.object_], doors: shapely.Geometry) -> Faces:
+def _gathered(segments: Array) -> shapely.MultiLineString:
+    lines = shapely.multilinestrings(shapely.linestrings(segments))
+    shapely.prepare(lines)
+    return lines
+
+
+def _adjacency(polygons: NDArray[np.object_], doorways: shapely.Geometry, doors: shapely.Geometry) -> Faces:
     rings, owner = shapely.get_rings(polygons, return_index=True)
     coords, ring = shapely.get_coordinates(rings, return_index=True)
     inside = ring[1:] == ring[:-1]
@@ -97,17 +109,21 @@ def _adjacency(polygons: NDArray[np.object_], doors: shapely.Geometry) -> Faces:
     i, j = face[order[shared]], face[order[shared + 1]]
     d = GRID * (key[shared, 2:] - key[shared, :2])
     length = np.hypot(*d.T)
-    cos2, sin2 = (d[:, 0] ** 2 - d[:, 1] ** 2) / length, 2.0 * d[:, 0] * d[:, 1] / length
-    middle = shapely.points(GRID * (key[shared, 2:] + key[shared, :2]) / 2)
-    on_door = shapely.dwithin(doors, middle, 2 * GRID) if not doors.is_empty else np.zeros(len(i), dtype=bool)
+    ends = GRID * np.stack([key[shared, :2], key[shared, 2:]], axis=1)
+    middle = shapely.points(ends.mean(1))
+    in_doorway = np.where(shapely.dwithin(doorways, middle, 2 * GRID), length, 0.0)
+    on_door = shapely.dwithin(doors, middle, 2 * GRID)
+    first, second = np.minimum(i, j), np.maximum(i, j)
+    order = np.flatnonzero(i != j)
+    order = order[np.lexsort((second[order], first[order]))]
+    pairs = np.stack([first, second], axis=1)[order]
+    starts = np.flatnonzero((np.diff(pairs, axis=0, prepend=-1) != 0).any(1))
     borders: dict[tuple[int, int], Border] = {}
     barred = set()
-    for x, y, *piece, door in zip(
-        i.tolist(), j.tolist(), length.tolist(), cos2.tolist(), sin2.tolist(), on_door.tolist(), strict=True
-    ):
-        pair = (min(x, y), max(x, y))
-        if x != y:
-            borders[pair] = borders[pair] + Border(*piece) if pair in borders else Border(*piece)
-            if door:
-                barred.add(pair)
+    for start, stop in zip(starts.tolist(), np.append(starts[1:], len(pairs)).tolist(), strict=False):
+        rows = order[start:stop]
+        pair = (int(pairs[start, 0]), int(pairs[start, 1]))
+        borders[pair] = Border(ends[rows], float(length[rows].sum()), float(in_doorway[rows].sum()))
+        if on_door[rows].any():
+            barred.add(pair)
     return Faces(polygons, borders, frozenset(barred))

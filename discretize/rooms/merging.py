@@ -26,11 +26,14 @@ class Limits:
     ----------
     convexity : float
         Least area of a cell as a share of its convex hull's.
+    sight : float
+        Least share of pairs of points of a cell that see each other.
     gate : float
         Least length of a boundary that is dissolved, as a share of the extent, along it, of the smaller side.
     """
 
     convexity: float
+    sight: float
     gate: float
 
 
@@ -48,12 +51,18 @@ class Region:
         Corners of its convex hull, metres.
     hull_area : float
         Square metres.
+    points : ndarray, shape (p, 2)
+        Some points of it, spread evenly, metres.
+    sight : float
+        Estimate of the share of pairs of its points that see each other.
     """
 
     faces: frozenset[int]
     area: float
     hull: Array
     hull_area: float
+    points: Array
+    sight: float
 
     @property
     def convexity(self) -> float:
@@ -81,7 +90,7 @@ class Regions:
         self._limits = limits
         hulls = shapely.convex_hull(faces.polygons)
         self.single = [
-            Region(frozenset([k]), float(p.area), shapely.get_coordinates(h)[:-1], float(h.area))
+            Region(frozenset([k]), float(p.area), shapely.get_coordinates(h)[:-1], float(h.area), spread(p), 1.0)
             for k, (p, h) in enumerate(zip(faces.polygons, hulls, strict=True))
         ]
         self.pool: dict[frozenset[int], Region] = {r.faces: r for r in self.single}
@@ -157,13 +166,56 @@ class Regions:
                 gate = border.length / max(min(a.extent(direction), b.extent(direction)), 1e-9)
                 convexity = area / hull_area
                 allowed = convexity >= self._limits.convexity and (gate >= self._limits.gate or convexity >= 0.995)
-                union = None
+                # What lies within the thickness of a wall may join the room on either side of the doorway.
+                if border.door > 0.3 * border.length and min(a.area, b.area) > 0.5 * border.door**2:
+                    allowed = False
+                union, sight = None, 0.0
                 if allowed:
+                    through = crossing(a.points, b.points, border.pieces)
+                    sight = (a.sight * a.area**2 + b.sight * b.area**2 + 2 * a.area * b.area * through) / area**2
+                if sight >= self._limits.sight:
                     faces = a.faces | b.faces
-                    union = self.pool.get(faces) or Region(faces, area, shapely.get_coordinates(hull)[:-1], hull_area)
-                self._tried[_key(a, b)] = (union, convexity + 0.2 * min(gate, 1.0))
+                    points = _thin(a, b)
+                    corners = shapely.get_coordinates(hull)[:-1]
+                    union = self.pool.get(faces) or Region(faces, area, corners, hull_area, points, sight)
+                self._tried[_key(a, b)] = (union, convexity + sight + 0.2 * min(gate, 1.0))
         return [self._tried[_key(a, b)] for a, b, _ in pairs]
 
 
 def _key(a: Region, b: Region) -> tuple[frozenset[int], frozenset[int]]:
     return a.faces, b.faces
+
+
+def spread(polygon: shapely.Polygon, n: int = 8) -> Array:
+    """Return about ``n`` points of a polygon, spread evenly, shape (p, 2), metres."""
+    x0, y0, x1, y1 = polygon.bounds
+    for tries in (2 * n, 16 * n):
+        points = np.array([x0, y0]) + LATTICE[:tries] * np.array([x1 - x0, y1 - y0])
+        points = points[shapely.contains_xy(polygon, points)]
+        if len(points) >= n // 2:
+            return points[:n]
+    return np.concatenate([points, shapely.get_coordinates(polygon.representative_point())])
+
+
+def crossing(p: Array, q: Array, pieces: Array) -> float:
+    """Return the share of pairs of points, one of ``p`` and one of ``q``, whose segment crosses one of ``pieces``."""
+    d = q[None] - p[:, None]
+    a, b = pieces[:, 0], pieces[:, 1]
+    to_a, to_b = a[None] - p[:, None], b[None] - p[:, None]
+    left = d[:, :, None, 0] * to_a[:, None, :, 1] - d[:, :, None, 1] * to_a[:, None, :, 0]
+    right = d[:, :, None, 0] * to_b[:, None, :, 1] - d[:, :, None, 1] * to_b[:, None, :, 0]
+    return float((left * right <= 0.0).any(2).mean())
+
+
+def _thin(a: Region, b: Region, most: int = 16) -> Array:
+    """Return points of both regions in proportion to their areas."""
+    n = min(most, len(a.points) + len(b.points))
+    of_a = min(max(round(n * a.area / (a.area + b.area)), 1), n - 1)
+    chosen = []
+    for region, count in ((a, of_a), (b, n - of_a)):
+        chosen.append(region.points[np.linspace(0, len(region.points) - 1, min(count, len(region.points))).round().astype(int)])
+    return np.concatenate(chosen)
+
+
+# The plastic number's lattice: any leading part of it is spread evenly over the unit square.
+LATTICE = np.mod(0.5 + np.arange(1, 129)[:, None] * np.array([0.7548776662466927, 0.5698402909980532]), 1.0)

@@ -41,9 +41,9 @@ class RoomCut:
 def room_cells(plan: FloorPlan, *, tolerance: float = 0.1, seed: int = 0, radius: float = 0.2, runs: int = 12) -> RoomCut:
     space = structure(plan.space, detail=radius / 2, clutter=8 * radius)
     doors = np.array([shapely.get_coordinates(d)[[0, -1]] for d in plan.doors]).reshape(-1, 2, 2)
-    cuts = candidate_cuts(space, doors, tolerance)
-    faces = arrangement(space, cuts, doors)
-    regions = Regions(faces, Limits(1.0 - tolerance, GATE))
+    cuts, doorway = candidate_cuts(space, doors, tolerance, 2 * radius)
+    faces = arrangement(space, cuts, doorway, doors)
+    regions = Regions(faces, Limits(1.0 - tolerance, 1.0 - tolerance, GATE))
     rng = np.random.default_rng(seed)
     for k in range(runs):
         regions.merge(rng, 0.0 if k == 0 else 0.05 * (1 + k % 4))
@@ -56,19 +56,19 @@ def room_cells(plan: FloorPlan, *, tolerance: float = 0.1, seed: int = 0, radius
 
 
 def cost(region: Region, faces: Faces) -> float:
-    return 1.0 + 1.0 * (1.0 - region.convexity) - 1e-4 * np.sqrt(region.area)
+    return 1.0 + 1.0 * (1.0 - region.convexity) + 2.0 * (1.0 - region.sight) - 1e-4 * np.sqrt(region.area)
 
 
-def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float) -> Array:
+def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float, notch: float) -> tuple[Array, Array]:
     """Doorways, and in each part of the plan that these leave and that is not nearly convex every other sensible cut."""
     at = corners(space)
     segments, ends = necks(space, at, 6.0)
     if not len(segments):
         segments, ends = np.empty((0, 2, 2)), np.empty((0, 2), dtype=np.intp)
-    chosen, clear = doorways(space, segments, ends, len(at))
+    chosen, clear = doorways(space, at, segments, ends)
     certain = segments[chosen[clear]]
-    zones = arrangement(space, certain, doors).polygons
-    cuts = list(certain)
+    zones = arrangement(space, np.empty((0, 2, 2)), certain, doors).polygons
+    cuts: list[Array] = []
     rest = np.delete(np.arange(len(segments)), chosen[clear])
     maybe = segments[rest]
     tree = shapely.STRtree(shapely.linestrings(maybe)) if len(maybe) else None
@@ -76,6 +76,8 @@ def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float) -> A
         if zone.area >= (1.0 - 0.5 * tolerance) * zone.convex_hull.area and not zone.interiors:
             continue
         local = corners(zone)
+        deep = {tuple(p) for p in corners(shapely.simplify(zone, notch)).points.tolist()}
+        local = local[np.array([tuple(p) in deep for p in local.points.tolist()], dtype=bool)]
         if len(local) == 0:
             continue
         walls = Walls(ring_segments(zone))
@@ -85,7 +87,7 @@ def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float) -> A
             k = tree.query(inner, predicate="covers")
             found += list(maybe[np.sort(k)])
         cuts += _distinct(found)
-    return np.array(cuts).reshape(-1, 2, 2)
+    return np.array(cuts).reshape(-1, 2, 2), certain
 
 
 def _distinct(cuts: list[Array]) -> list[Array]:
