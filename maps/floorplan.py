@@ -98,7 +98,7 @@ class FloorPlan:
     @property
     def walls(self) -> NDArray[np.float64]:
         """Wall segments, shape (W, 2, 2): every edge of every ring of the free space, in metres."""
-        rings = shapely.get_rings(self.space)
+        rings = shapely.get_rings(shapely.get_parts(self.space))
         coords, ring = shapely.get_coordinates(rings, return_index=True)
         follows = ring[1:] == ring[:-1]
         return np.stack([coords[:-1][follows], coords[1:][follows]], axis=1)
