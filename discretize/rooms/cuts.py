@@ -20,9 +20,11 @@ Index = NDArray[np.intp]
 REFLEX = np.radians(8.0)  # a corner that turns by less is a bend of a wall, not a corner
 SLACK = 0.25  # cosine by which a wall may lean towards a neck that still counts as locally shortest
 OPENS = 1.25  # a doorway: the free space is this much wider than the neck on either side of it
-CLEAR = 1.6  # as much wider as this, and nobody doubts that it is one
+CLEAR = 2.2  # one that carries on neither wall at its ends has to be this plain to be beyond doubt
 ASKEW = 1.6  # a neck that carries on no wall counts as that much wider when the narrowest come first
 LONG = 0.5  # metres; a shorter wall does not show its direction well
+WALL = (0.15, 0.3, 0.45)  # metres past the end of a neck where a wall should carry on
+BUMP = 0.12  # metres by which that wall may stray
 COLLINEAR = np.cos(np.radians(15.0))
 OFFSETS = (0.15, 0.35, 0.6)  # how far from the neck that is looked at, in widths of the neck
 
@@ -55,7 +57,7 @@ class Corners:
 
 def ring_segments(space: shapely.Geometry) -> Array:
     """Return every edge of every ring of polygons, free space on the left, shape (M, 2, 2)."""
-    rings = shapely.get_rings(shapely.orient_polygons(space))
+    rings = shapely.get_rings(shapely.get_parts(shapely.orient_polygons(space)))
     coords, ring = shapely.get_coordinates(rings, return_index=True)
     inside = ring[1:] == ring[:-1]
     return np.stack([coords[:-1][inside], coords[1:][inside]], axis=1)
@@ -64,7 +66,7 @@ def ring_segments(space: shapely.Geometry) -> Array:
 def corners(space: shapely.Geometry, least: float = REFLEX) -> Corners:
     """Find the reflex vertices of polygons: those that turn right by more than ``least`` radians."""
     found = [np.empty((0, 8))]
-    for ring in shapely.get_rings(shapely.orient_polygons(space)):
+    for ring in shapely.get_rings(shapely.get_parts(shapely.orient_polygons(space))):
         p = shapely.get_coordinates(ring)[:-1]
         incoming, outgoing = _unit(p - np.roll(p, 1, 0)), _unit(np.roll(p, -1, 0) - p)
         turn = np.arctan2(_cross(incoming, outgoing), (incoming * outgoing).sum(1))
@@ -158,8 +160,10 @@ def doorways(space: shapely.Geometry, at: Corners, segments: Array, ends: Index)
         Which of them nobody would doubt.
     """
     width = np.hypot(*(segments[:, 1] - segments[:, 0]).T)
-    order = np.argsort(width * np.where(_continues(at, segments, ends), 1.0, ASKEW), kind="stable")
-    segments, ends, width = segments[order], ends[order], width[order]
+    straight = _continues(space, segments)
+    width = np.where(straight, width, ASKEW * width)
+    order = np.argsort(width, kind="stable")
+    segments, ends, width, straight = segments[order], ends[order], width[order], straight[order]
     tree = shapely.STRtree(shapely.linestrings(segments))
     rivals: list[list[int]] = [[] for _ in segments]
     for x, y in tree.query(shapely.linestrings(segments), predicate="dwithin", distance=0.5).T.tolist():
@@ -169,10 +173,9 @@ def doorways(space: shapely.Geometry, at: Corners, segments: Array, ends: Index)
     opening = np.zeros(len(segments))
     settled = np.zeros(len(at) + 1, dtype=bool)
     settled[-1] = True
-    stone = ring_segments(space)
     # A doorway already found closes the view through it, so that a hallway between two doors is not wider there.
-    for start, stop in _classes(width * np.where(_continues(at, segments, ends), 1.0, ASKEW)):
-        opening[start:stop] = _opening(Walls(np.concatenate([stone, segments[chosen]])), segments[start:stop])
+    for start, stop in _classes(width):
+        opening[start:stop] = _opening(space, segments[chosen], segments[start:stop])
         for k in (start + np.flatnonzero(opening[start:stop] >= OPENS)).tolist():
             if settled[ends[k]].all():
                 continue
@@ -181,7 +184,10 @@ def doorways(space: shapely.Geometry, at: Corners, segments: Array, ends: Index)
             if repeats or not any(_crosses(segments[k], segments[r]) for r in taken):
                 settled[ends[k]] = True
                 chosen[k] = not repeats
-    return order[chosen], opening[chosen] >= CLEAR
+    # Some hallways were only crossed because a wider doorway beside them had not been found yet.
+    rows = np.flatnonzero(chosen)
+    chosen[rows] = _opening(space, segments[rows], segments[rows]) >= OPENS
+    return order[chosen], straight[chosen] | (opening[chosen] >= CLEAR)
 
 
 def _classes(width: Array) -> list[tuple[int, int]]:
@@ -242,16 +248,19 @@ def _splits(at: Corners, k: int, direction: Array) -> bool:
     return bool(_cross2(a, direction) >= -lean and _cross2(direction, b) >= -lean and direction @ (a + b) < 0.2)
 
 
-def _continues(at: Corners, segments: Array, ends: Index) -> NDArray[np.bool_]:
-    """Whether each neck carries on, at one of its ends, the longer of the two walls that meet there."""
+def _continues(space: shapely.Geometry, segments: Array) -> NDArray[np.bool_]:
+    """Whether each neck, carried on past one of its ends, runs along a wall: it closes a gap in that wall."""
     d = segments[:, 1] - segments[:, 0]
     d = d / np.hypot(*d.T)[:, None]
+    walls = shapely.boundary(space)
+    shapely.prepare(walls)
     result = np.zeros(len(d), dtype=bool)
-    for end, sign in ((0, 1.0), (1, -1.0)):
-        k = ends[:, end]
-        for wall, own, other in ((at.before, 0, 1), (at.after, 1, 0)):
-            straight = -sign * (d * wall[k]).sum(1) >= COLLINEAR
-            result |= (k >= 0) & straight & (at.lengths[k, own] > at.lengths[k, other])
+    for end, outward in ((segments[:, 0], -d), (segments[:, 1], d)):
+        along = np.ones(len(d), dtype=bool)
+        for step in WALL:
+            points = shapely.points(end + step * outward)
+            along &= shapely.dwithin(walls, points, BUMP)
+        result |= along
     return result
 
 
@@ -263,8 +272,10 @@ def same_cut(s: Array, o: Array) -> bool:
     return bool(min(straight, turned) <= min(near, 0.5))
 
 
-def _opening(walls: Walls, segments: Array) -> Array:
-    """Return how much wider than each neck the free space is on the less open of its two sides."""
+def _opening(space: shapely.Geometry, shut: Array, segments: Array) -> Array:
+    """Return how much wider than each neck the free space is on the less open of its two sides, some doorways shut."""
+    stone = ring_segments(space)
+    ahead, aside = Walls(stone), Walls(np.concatenate([stone, shut]))
     along = segments[:, 1] - segments[:, 0]
     width = np.hypot(*along.T)
     along = along / width[:, None]
@@ -272,13 +283,13 @@ def _opening(walls: Walls, segments: Array) -> Array:
     result = np.full(len(segments), np.inf)
     for side in (1.0, -1.0):
         normal = side * np.stack([-along[:, 1], along[:, 0]], axis=1)
-        depth = walls.hits(middle, normal, 0.8 * width)
+        depth = ahead.hits(middle, normal, 0.8 * width)
         widest = np.zeros(len(segments))
         for offset in OFFSETS:
             seen = depth > offset * width + 1e-3
             origin = middle[seen] + (offset * width[seen])[:, None] * normal[seen]
-            left = walls.hits(origin, along[seen], 1.5 * width[seen], skip=0.0)
-            right = walls.hits(origin, -along[seen], 1.5 * width[seen], skip=0.0)
+            left = aside.hits(origin, along[seen], 1.5 * width[seen], skip=0.0)
+            right = aside.hits(origin, -along[seen], 1.5 * width[seen], skip=0.0)
             widest[seen] = np.maximum(widest[seen], (left + right) / width[seen])
         result = np.minimum(result, widest)
     return result

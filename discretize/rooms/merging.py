@@ -17,6 +17,8 @@ __all__ = ["Limits", "Region", "Regions"]
 
 Array = NDArray[np.float64]
 
+SILL = 0.55  # more of a sill's outline than this lies in doorways
+
 
 @dataclass(frozen=True, slots=True)
 class Limits:
@@ -30,11 +32,14 @@ class Limits:
         Least share of pairs of points of a cell that see each other.
     gate : float
         Least length of a boundary that is dissolved, as a share of the extent, along it, of the smaller side.
+    through : float
+        Least share of pairs of points, one on either side of a boundary that is dissolved, that see each other.
     """
 
     convexity: float
     sight: float
     gate: float
+    through: float
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -55,6 +60,10 @@ class Region:
         Some points of it, spread evenly, metres.
     sight : float
         Estimate of the share of pairs of its points that see each other.
+    open : float
+        Length of its boundary that is neither wall nor doorway, metres.
+    sill : bool
+        Whether it lies within the thickness of a wall, between the two faces of a doorway.
     """
 
     faces: frozenset[int]
@@ -63,6 +72,8 @@ class Region:
     hull_area: float
     points: Array
     sight: float
+    open: float
+    sill: bool = False
 
     @property
     def convexity(self) -> float:
@@ -89,8 +100,15 @@ class Regions:
         self._faces = faces
         self._limits = limits
         hulls = shapely.convex_hull(faces.polygons)
+        door, shut = np.zeros(len(faces)), np.zeros(len(faces))
+        for (i, j), border in faces.borders.items():
+            door[[i, j]] += border.door
+            shut[[i, j]] += border.length - border.door
+        sill = door > SILL * shapely.length(faces.polygons)
         self.single = [
-            Region(frozenset([k]), float(p.area), shapely.get_coordinates(h)[:-1], float(h.area), spread(p), 1.0)
+            Region(
+                frozenset([k]), p.area, shapely.get_coordinates(h)[:-1], h.area, spread(p), 1.0, shut[k], bool(sill[k])
+            )
             for k, (p, h) in enumerate(zip(faces.polygons, hulls, strict=True))
         ]
         self.pool: dict[frozenset[int], Region] = {r.faces: r for r in self.single}
@@ -167,17 +185,18 @@ class Regions:
                 convexity = area / hull_area
                 allowed = convexity >= self._limits.convexity and (gate >= self._limits.gate or convexity >= 0.995)
                 # What lies within the thickness of a wall may join the room on either side of the doorway.
-                if border.door > 0.3 * border.length and min(a.area, b.area) > 0.5 * border.door**2:
-                    allowed = False
+                sill = a.sill or b.sill
+                allowed &= sill or border.door <= 0.3 * border.length
                 union, sight = None, 0.0
                 if allowed:
                     through = crossing(a.points, b.points, border.pieces)
                     sight = (a.sight * a.area**2 + b.sight * b.area**2 + 2 * a.area * b.area * through) / area**2
-                if sight >= self._limits.sight:
+                if sight >= self._limits.sight and (through >= self._limits.through or sill):
                     faces = a.faces | b.faces
                     points = _thin(a, b)
+                    shut = a.open + b.open - 2 * (border.length - border.door)
                     corners = shapely.get_coordinates(hull)[:-1]
-                    union = self.pool.get(faces) or Region(faces, area, corners, hull_area, points, sight)
+                    union = self.pool.get(faces) or Region(faces, area, corners, hull_area, points, sight, shut)
                 self._tried[_key(a, b)] = (union, convexity + sight + 0.2 * min(gate, 1.0))
         return [self._tried[_key(a, b)] for a, b, _ in pairs]
 

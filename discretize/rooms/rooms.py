@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 
 SOLID = 0.9
 GATE = 0.7
+THROUGH = 0.4
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +40,11 @@ class RoomCut:
 
 
 def room_cells(plan: FloorPlan, *, tolerance: float = 0.1, seed: int = 0, radius: float = 0.2, runs: int = 12) -> RoomCut:
-    space = structure(plan.space, detail=radius / 2, clutter=8 * radius)
+    space = structure(plan.space, detail=radius / 2, clutter=4 * radius)
     doors = np.array([shapely.get_coordinates(d)[[0, -1]] for d in plan.doors]).reshape(-1, 2, 2)
     cuts, doorway = candidate_cuts(space, doors, tolerance, 2 * radius)
     faces = arrangement(space, cuts, doorway, doors)
-    regions = Regions(faces, Limits(1.0 - tolerance, 1.0 - tolerance, GATE))
+    regions = Regions(faces, Limits(1.0 - tolerance, 1.0 - tolerance, GATE, THROUGH))
     rng = np.random.default_rng(seed)
     for k in range(runs):
         regions.merge(rng, 0.0 if k == 0 else 0.05 * (1 + k % 4))
@@ -56,7 +57,7 @@ def room_cells(plan: FloorPlan, *, tolerance: float = 0.1, seed: int = 0, radius
 
 
 def cost(region: Region, faces: Faces) -> float:
-    return 1.0 + 1.0 * (1.0 - region.convexity) + 2.0 * (1.0 - region.sight) - 1e-4 * np.sqrt(region.area)
+    return 1.0 + 1.0 * (1.0 - region.convexity) + 2.0 * (1.0 - region.sight) + 0.05 * region.open / np.sqrt(region.area)
 
 
 def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float, notch: float) -> tuple[Array, Array]:
