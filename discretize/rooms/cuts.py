@@ -12,21 +12,21 @@ import shapely
 from discretize.rooms.rays import Walls
 from numpy.typing import NDArray
 
-__all__ = ["Corners", "corners", "doorways", "extensions", "necks", "ring_segments"]
+__all__ = ["Corners", "askew", "corners", "doorways", "extensions", "necks", "ring_segments"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 REFLEX = np.radians(8.0)  # a corner that turns by less is a bend of a wall, not a corner
-SLACK = 0.25  # cosine by which a wall may lean towards a neck that still counts as locally shortest
+SLACK = 0.25, 0.5  # cosine by which a wall may lean towards a neck, to a wall or corner, that counts as locally shortest
 OPENS = 1.25  # a doorway: the free space is this much wider than the neck on either side of it
-CLEAR = 2.2  # one that carries on neither wall at its ends has to be this plain to be beyond doubt
 ASKEW = 1.6  # a neck that carries on no wall counts as that much wider when the narrowest come first
 LONG = 0.5  # metres; a shorter wall does not show its direction well
 WALL = (0.15, 0.3, 0.45)  # metres past the end of a neck where a wall should carry on
 BUMP = 0.12  # metres by which that wall may stray
+LEAN = np.radians(12.0)
 COLLINEAR = np.cos(np.radians(15.0))
-OFFSETS = (0.15, 0.35, 0.6)  # how far from the neck that is looked at, in widths of the neck
+OFFSETS = (0.15, 0.35, 0.6)  # how far from a neck that is looked at, in its widths but at most in metres
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +108,8 @@ def necks(space: shapely.Geometry, at: Corners, reach: float, most: int = 4) -> 
     q = a + t[:, None] * along
     width = np.hypot(*(q - p).T)
     direction = (q - p) / np.maximum(width, 1e-12)[:, None]
-    good = (width > 2e-3) & ((direction * at.before[v]).sum(1) <= SLACK) & ((direction * at.after[v]).sum(1) <= SLACK)
+    lean = np.maximum((direction * at.before[v]).sum(1), (direction * at.after[v]).sum(1))
+    good = (width > 2e-3) & (lean <= np.where((t == 0.0) | (t == 1.0), SLACK[1], SLACK[0]))
     v, e, t, q, width, direction = v[good], e[good], t[good], q[good], width[good], direction[good]
 
     far = np.full(len(v), -1, dtype=np.intp)
@@ -118,8 +119,8 @@ def necks(space: shapely.Geometry, at: Corners, reach: float, most: int = 4) -> 
         far[k] = number.get(tuple(np.round(1e3 * q[k]).astype(int)), -1)
     corner = far >= 0
     meets = np.ones(len(v), dtype=bool)
-    meets[corner] = ((-direction[corner] * at.before[far[corner]]).sum(1) <= SLACK) & (
-        (-direction[corner] * at.after[far[corner]]).sum(1) <= SLACK
+    meets[corner] = ((-direction[corner] * at.before[far[corner]]).sum(1) <= SLACK[1]) & (
+        (-direction[corner] * at.after[far[corner]]).sum(1) <= SLACK[1]
     )
     keep = meets & (corner | ~at_end)
     v, q, width, far = v[keep], q[keep], width[keep], far[keep]
@@ -160,8 +161,8 @@ def doorways(space: shapely.Geometry, at: Corners, segments: Array, ends: Index)
         Which of them nobody would doubt.
     """
     width = np.hypot(*(segments[:, 1] - segments[:, 0]).T)
-    straight = _continues(space, segments)
-    width = np.where(straight, width, ASKEW * width)
+    factor = askew(space, segments)
+    straight, width = factor < ASKEW, factor * width
     order = np.argsort(width, kind="stable")
     segments, ends, width, straight = segments[order], ends[order], width[order], straight[order]
     tree = shapely.STRtree(shapely.linestrings(segments))
@@ -171,23 +172,27 @@ def doorways(space: shapely.Geometry, at: Corners, segments: Array, ends: Index)
             rivals[x].append(y)
     chosen = np.zeros(len(segments), dtype=bool)
     opening = np.zeros(len(segments))
+    shut = np.zeros(len(segments), dtype=bool)
     settled = np.zeros(len(at) + 1, dtype=bool)
     settled[-1] = True
     # A doorway already found closes the view through it, so that a hallway between two doors is not wider there.
     for start, stop in _classes(width):
-        opening[start:stop] = _opening(space, segments[chosen], segments[start:stop])
+        opening[start:stop] = _opening(space, segments[shut], segments[start:stop])
         for k in (start + np.flatnonzero(opening[start:stop] >= OPENS)).tolist():
             if settled[ends[k]].all():
                 continue
             taken = [r for r in rivals[k] if chosen[r]]
-            repeats = any(same_cut(segments[k], segments[r]) for r in taken)
-            if repeats or not any(_crosses(segments[k], segments[r]) for r in taken):
+            repeated = [r for r in taken if same_cut(segments[k], segments[r])]
+            crosses = any(_crosses(segments[k], segments[r]) for r in taken)
+            if repeated or not crosses:
                 settled[ends[k]] = True
-                chosen[k] = not repeats
+                # The other face of the wall is a second place for the same cut; the wall's thickness lies between.
+                chosen[k] = not crosses and all(_apart(segments[k], segments[r]) >= BUMP for r in repeated)
+                shut[k] = True
     # Some hallways were only crossed because a wider doorway beside them had not been found yet.
     rows = np.flatnonzero(chosen)
-    chosen[rows] = _opening(space, segments[rows], segments[rows]) >= OPENS
-    return order[chosen], straight[chosen] | (opening[chosen] >= CLEAR)
+    chosen[rows] = _opening(space, segments[shut], segments[rows]) >= OPENS
+    return order[chosen], straight[chosen]
 
 
 def _classes(width: Array) -> list[tuple[int, int]]:
@@ -222,8 +227,8 @@ def extensions(walls: Walls, at: Corners, reach: float) -> Array:
     return np.stack([o, o + length[:, None] * d], axis=1)
 
 
-def main_directions(segments: Array, most: int = 4) -> Array:
-    """Return the directions in which most wall runs, at most four, as unit vectors with angles in [0, pi)."""
+def main_directions(segments: Array, most: int = 4, least: float = 0.1) -> Array:
+    """Return the directions in which at least so large a share of wall runs, as unit vectors with angles in [0, pi)."""
     d = segments[:, 1] - segments[:, 0]
     length = np.hypot(d[:, 0], d[:, 1])
     doubled = (d[:, 0] + 1j * d[:, 1]) ** 2 / np.maximum(length, 1e-12)
@@ -233,7 +238,7 @@ def main_directions(segments: Array, most: int = 4) -> Array:
     while len(found) < most and left.any():
         k = int(np.argmax(np.where(left, length, -1.0)))
         near = left & ((doubled * np.conj(doubled[k])).real >= width * length * length[k])
-        if length[near].sum() >= 0.1 * length.sum():
+        if length[near].sum() >= least * length.sum():
             angle = 0.5 * np.angle(doubled[near].sum()) % np.pi
             found.append(np.array([np.cos(angle), np.sin(angle)]))
         left &= ~near
@@ -248,19 +253,30 @@ def _splits(at: Corners, k: int, direction: Array) -> bool:
     return bool(_cross2(a, direction) >= -lean and _cross2(direction, b) >= -lean and direction @ (a + b) < 0.2)
 
 
-def _continues(space: shapely.Geometry, segments: Array) -> NDArray[np.bool_]:
-    """Whether each neck, carried on past one of its ends, runs along a wall: it closes a gap in that wall."""
+def askew(space: shapely.Geometry, segments: Array) -> Array:
+    """Return by how much wider each neck should count when the narrowest come first, from 1 to ``ASKEW``.
+
+    A doorway closes a gap in a wall: carried on past one of its ends it runs along that wall (1), or inside a wall and
+    square to the walls of the plan (1 to 1.6, the more it leans). Any other neck counts as ``ASKEW``.
+    """
     d = segments[:, 1] - segments[:, 0]
     d = d / np.hypot(*d.T)[:, None]
+    mains = main_directions(ring_segments(space), most=8, least=0.03)
+    square = np.abs(np.concatenate([d @ mains.T, d @ np.stack([-mains[:, 1], mains[:, 0]])], axis=1)).max(1)
+    lean = np.arccos(np.minimum(square, 1.0))
     walls = shapely.boundary(space)
     shapely.prepare(walls)
-    result = np.zeros(len(d), dtype=bool)
+    result = np.full(len(d), ASKEW)
     for end, outward in ((segments[:, 0], -d), (segments[:, 1], d)):
-        along = np.ones(len(d), dtype=bool)
+        along, inside = np.ones(len(d), dtype=bool), lean <= LEAN
         for step in WALL:
             points = shapely.points(end + step * outward)
-            along &= shapely.dwithin(walls, points, BUMP)
-        result |= along
+            near = shapely.dwithin(walls, points, BUMP)
+            along &= near
+            inside &= near | ~shapely.covers(space, points)
+        leaning = 1.0 + (ASKEW - 1.0) * lean / LEAN
+        factor = np.where(along, np.minimum(leaning, 1.3), np.where(inside, np.minimum(leaning, ASKEW - 1e-6), ASKEW))
+        result = np.minimum(result, factor)
     return result
 
 
@@ -270,6 +286,11 @@ def same_cut(s: Array, o: Array) -> bool:
     straight = max(np.hypot(*(s[0] - o[0])), np.hypot(*(s[1] - o[1])))
     turned = max(np.hypot(*(s[0] - o[1])), np.hypot(*(s[1] - o[0])))
     return bool(min(straight, turned) <= min(near, 0.5))
+
+
+def _apart(s: Array, o: Array) -> float:
+    """Return the least distance between an end of one segment and the other segment, metres."""
+    return float(shapely.distance(shapely.LineString(s), shapely.LineString(o)))
 
 
 def _opening(space: shapely.Geometry, shut: Array, segments: Array) -> Array:
@@ -283,11 +304,12 @@ def _opening(space: shapely.Geometry, shut: Array, segments: Array) -> Array:
     result = np.full(len(segments), np.inf)
     for side in (1.0, -1.0):
         normal = side * np.stack([-along[:, 1], along[:, 0]], axis=1)
-        depth = ahead.hits(middle, normal, 0.8 * width)
+        unit = np.minimum(width, 1.0)
+        depth = ahead.hits(middle, normal, 0.8 * unit)
         widest = np.zeros(len(segments))
         for offset in OFFSETS:
-            seen = depth > offset * width + 1e-3
-            origin = middle[seen] + (offset * width[seen])[:, None] * normal[seen]
+            seen = depth > offset * unit + 1e-3
+            origin = middle[seen] + (offset * unit[seen])[:, None] * normal[seen]
             left = aside.hits(origin, along[seen], 1.5 * width[seen], skip=0.0)
             right = aside.hits(origin, -along[seen], 1.5 * width[seen], skip=0.0)
             widest[seen] = np.maximum(widest[seen], (left + right) / width[seen])

@@ -10,6 +10,7 @@ __all__ = ["GRID", "Border", "Faces", "arrangement"]
 
 Array = NDArray[np.float64]
 
+SILL = 0.6  # area of what lies within a doorway, in squares of its width: walls are thinner than doors are wide
 GRID = 1e-3  # metres; everything before the last step lies on this grid, so that noding is exact
 
 
@@ -56,11 +57,14 @@ class Faces:
         For each pair of adjacent faces, the smaller number first.
     barred : frozenset of (int, int)
         Pairs that share a piece of a door that the source has; never joined.
+    sill : ndarray of bool, shape (F,)
+        Faces that lie within the thickness of a wall, between the two sides of a doorway.
     """
 
     polygons: NDArray[np.object_]
     borders: dict[tuple[int, int], Border]
     barred: frozenset[tuple[int, int]]
+    sill: NDArray[np.bool_]
 
     def __len__(self) -> int:
         return len(self.polygons)
@@ -126,4 +130,15 @@ def _adjacency(polygons: NDArray[np.object_], doorways: shapely.Geometry, doors:
         borders[pair] = Border(ends[rows], float(length[rows].sum()), float(in_doorway[rows].sum()))
         if on_door[rows].any():
             barred.add(pair)
-    return Faces(polygons, borders, frozenset(barred))
+    return Faces(polygons, borders, frozenset(barred), _sills(polygons, borders))
+
+
+def _sills(polygons: NDArray[np.object_], borders: dict[tuple[int, int], Border]) -> NDArray[np.bool_]:
+    """Whether a face is as shallow as a wall is thick, has a doorway on one side and wall on the two next to it."""
+    widest, shared = np.zeros(len(polygons)), np.zeros(len(polygons))
+    for (i, j), border in borders.items():
+        widest[[i, j]] = np.maximum(widest[[i, j]], border.door)
+        shared[[i, j]] += border.length
+    area = shapely.area(polygons)
+    depth = area / np.maximum(widest, GRID)
+    return (depth < SILL * widest) & (shapely.length(polygons) - shared >= depth)

@@ -17,7 +17,6 @@ __all__ = ["Limits", "Region", "Regions"]
 
 Array = NDArray[np.float64]
 
-SILL = 0.55  # more of a sill's outline than this lies in doorways
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,14 +99,12 @@ class Regions:
         self._faces = faces
         self._limits = limits
         hulls = shapely.convex_hull(faces.polygons)
-        door, shut = np.zeros(len(faces)), np.zeros(len(faces))
+        shut = np.zeros(len(faces))
         for (i, j), border in faces.borders.items():
-            door[[i, j]] += border.door
             shut[[i, j]] += border.length - border.door
-        sill = door > SILL * shapely.length(faces.polygons)
         self.single = [
             Region(
-                frozenset([k]), p.area, shapely.get_coordinates(h)[:-1], h.area, spread(p), 1.0, shut[k], bool(sill[k])
+                frozenset([k]), p.area, shapely.get_coordinates(h)[:-1], h.area, spread(p), 1.0, shut[k], bool(faces.sill[k])
             )
             for k, (p, h) in enumerate(zip(faces.polygons, hulls, strict=True))
         ]

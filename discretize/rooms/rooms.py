@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from discretize.rooms.cuts import corners, doorways, extensions, necks, ring_segments, same_cut
+from discretize.rooms.cuts import askew, corners, doorways, extensions, necks, ring_segments, same_cut
 from discretize.rooms.faces import GRID, Faces, arrangement
 from discretize.rooms.fitting import fit
 from discretize.rooms.merging import Limits, Region, Regions
@@ -68,12 +68,13 @@ def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float, notc
         segments, ends = np.empty((0, 2, 2)), np.empty((0, 2), dtype=np.intp)
     chosen, clear = doorways(space, at, segments, ends)
     certain = segments[chosen[clear]]
-    zones = arrangement(space, np.empty((0, 2, 2)), certain, doors).polygons
+    zones = arrangement(space, np.empty((0, 2, 2)), certain, doors)
     cuts: list[Array] = []
     rest = np.delete(np.arange(len(segments)), chosen[clear])
     maybe = segments[rest]
+    rank = np.hypot(*(maybe[:, 1] - maybe[:, 0]).T) * askew(space, maybe)
     tree = shapely.STRtree(shapely.linestrings(maybe)) if len(maybe) else None
-    for zone in zones:
+    for zone in zones.polygons[~zones.sill]:
         if zone.area >= (1.0 - 0.5 * tolerance) * zone.convex_hull.area and not zone.interiors:
             continue
         local = corners(zone)
@@ -82,17 +83,17 @@ def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float, notc
         if len(local) == 0:
             continue
         walls = Walls(ring_segments(zone))
-        found = list(extensions(walls, local, 1e3))
+        found = extensions(walls, local, 1e3)
+        width = np.hypot(*(found[:, 1] - found[:, 0]).T)
         if tree is not None:
             inner = shapely.buffer(zone, 2 * GRID)
-            k = tree.query(inner, predicate="covers")
-            found += list(maybe[np.sort(k)])
-        cuts += _distinct(found)
+            k = np.sort(tree.query(inner, predicate="covers"))
+            found, width = np.concatenate([found, maybe[k]]), np.concatenate([width, rank[k]])
+        cuts += _distinct(list(found[np.argsort(width.round(3), kind="stable")]))
     return np.array(cuts).reshape(-1, 2, 2), certain
 
 
 def _distinct(cuts: list[Array]) -> list[Array]:
-    cuts = sorted(cuts, key=lambda s: round(float(np.hypot(*(s[1] - s[0]))), 3))
     kept: list[Array] = []
     for s in cuts:
         if np.hypot(*(s[1] - s[0])) > 0.05 and not any(same_cut(s, o) for o in kept):

@@ -20,13 +20,18 @@ def structure(space: shapely.Geometry, detail: float, clutter: float) -> shapely
     clutter : float
         An obstacle that touches no wall and is no longer than this is filled, metres.
     """
-    parts = []
+    parts, thin = [], []
     for part in shapely.get_parts(space):
         holes = [ring for ring in part.interiors if _span(ring) > clutter]
-        parts.append(shapely.Polygon(_from_outermost(part.exterior), [_from_outermost(ring) for ring in holes]))
-    simple = shapely.simplify(shapely.MultiPolygon(parts), detail)
-    simple = shapely.set_precision(simple, GRID)
-    return shapely.MultiPolygon([p for p in shapely.get_parts(simple) if p.area > 0])
+        slim = [shapely.area(hole := shapely.Polygon(ring)) / hole.length < detail for ring in holes]
+        thin += [shapely.Polygon(ring) for ring, is_slim in zip(holes, slim, strict=True) if is_slim]
+        thick = [_from_outermost(ring) for ring, is_slim in zip(holes, slim, strict=True) if not is_slim]
+        parts.append(shapely.Polygon(_from_outermost(part.exterior), thick))
+    simple = shapely.set_precision(shapely.simplify(shapely.MultiPolygon(parts), detail), GRID)
+    # Straightening would flatten a free-standing wall thinner than this to nothing and so open what it divides.
+    walls = shapely.union_all(shapely.simplify(np.array(thin, dtype=object), detail / 4))
+    simple = shapely.difference(simple, walls, grid_size=GRID)
+    return shapely.MultiPolygon([p for p in shapely.get_parts(simple) if p.geom_type == "Polygon"])
 
 
 def _span(ring: shapely.LinearRing) -> float:
