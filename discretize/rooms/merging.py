@@ -194,7 +194,7 @@ class Regions:
                     shut = a.open + b.open - 2 * (border.length - border.door)
                     corners = shapely.get_coordinates(hull)[:-1]
                     union = self.pool.get(faces) or Region(faces, area, corners, hull_area, points, sight, shut)
-                self._tried[_key(a, b)] = (union, convexity + sight + 0.2 * min(gate, 1.0))
+                self._tried[_key(a, b)] = (union, convexity + sight + 0.2 * min(gate, 1.0) - 2.0 * sill)
         return [self._tried[_key(a, b)] for a, b, _ in pairs]
 
 

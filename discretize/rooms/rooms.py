@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 
 SOLID = 0.9
 GATE = 0.7
+W = [1.0, 2.0, 0.15]
 THROUGH = 0.4
 
 
@@ -57,7 +58,7 @@ def room_cells(plan: FloorPlan, *, tolerance: float = 0.1, seed: int = 0, radius
 
 
 def cost(region: Region, faces: Faces) -> float:
-    return 1.0 + 1.0 * (1.0 - region.convexity) + 2.0 * (1.0 - region.sight) + 0.05 * region.open / np.sqrt(region.area)
+    return 1.0 + W[0] * (1.0 - region.convexity) + W[1] * (1.0 - region.sight) + W[2] * region.open / np.sqrt(region.area)
 
 
 def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float, notch: float) -> tuple[Array, Array]:
