@@ -111,24 +111,20 @@ class Regions:
         self.pool: dict[frozenset[int], Region] = {r.faces: r for r in self.single}
         self._tried: dict[tuple[frozenset[int], frozenset[int]], tuple[Region | None, float]] = {}
 
-    def merge(self, rng: np.random.Generator, noise: float) -> list[Region]:
-        """Join faces greedily, best first, until nothing can be joined; every union made enters the pool.
+    def merge(self, start: Sequence[Region], rng: np.random.Generator, noise: float) -> list[Region]:
+        """Join regions greedily, best first, until nothing can be joined; every union made enters the pool.
 
         Parameters
         ----------
+        start : sequence of Region
+            Regions that cover every face once.
         rng : numpy.random.Generator
             Shuffles the order.
         noise : float
             Standard deviation of what is added to each union's merit; 0 gives the plain greedy order.
         """
-        alive: dict[int, Region] = dict(enumerate(self.single))
-        near: dict[int, dict[int, Border]] = {k: {} for k in alive}
-        for (i, j), border in self._faces.borders.items():
-            near[i][j] = near[j][i] = border
-        barred: dict[int, set[int]] = {k: set() for k in alive}
-        for i, j in self._faces.barred:
-            barred[i].add(j)
-            barred[j].add(i)
+        alive: dict[int, Region] = dict(enumerate(start))
+        near, barred = self._neighbours(start)
         heap: list[tuple[float, int, int]] = []
 
         def offer(pairs: list[tuple[int, int]]) -> None:
@@ -139,7 +135,7 @@ class Regions:
                 if union is not None:
                     heapq.heappush(heap, (-merit - extra, i, j))
 
-        offer(sorted(self._faces.borders))
+        offer([(i, j) for i in alive for j in sorted(near[i]) if i < j])
         fresh = len(alive)
         while heap:
             _, i, j = heapq.heappop(heap)
@@ -151,21 +147,37 @@ class Regions:
             del alive[i], alive[j]
             alive[fresh] = union
             self.pool.setdefault(union.faces, union)
-            barred[fresh] = barred[i] | barred[j]
+            barred[fresh] = barred.pop(i) | barred.pop(j)
+            for other in barred[fresh]:
+                barred[other] = barred[other] - {i, j} | {fresh}
             around: dict[int, Border] = {}
             for old in (i, j):
                 for other, border in near.pop(old).items():
                     if other in alive:
                         around[other] = around[other] + border if other in around else border
                         del near[other][old]
-                    if old in barred.get(other, ()):
-                        barred[other].add(fresh)
             near[fresh] = around
             for other, border in around.items():
                 near[other][fresh] = border
             offer([(other, fresh) for other in sorted(around)])
             fresh += 1
         return list(alive.values())
+
+    def _neighbours(self, start: Sequence[Region]) -> tuple[dict[int, dict[int, Border]], dict[int, set[int]]]:
+        """Return the borders between regions, and which of them a door keeps apart."""
+        owner = {face: k for k, region in enumerate(start) for face in region.faces}
+        near: dict[int, dict[int, Border]] = {k: {} for k in range(len(start))}
+        barred: dict[int, set[int]] = {k: set() for k in range(len(start))}
+        for (a, b), border in self._faces.borders.items():
+            i, j = owner[a], owner[b]
+            if i != j:
+                near[i][j] = near[j][i] = near[i][j] + border if j in near[i] else border
+        for a, b in self._faces.barred:
+            i, j = owner[a], owner[b]
+            if i != j:
+                barred[i].add(j)
+                barred[j].add(i)
+        return near, barred
 
     def _unions(self, pairs: Sequence[tuple[Region, Region, Border]]) -> list[tuple[Region | None, float]]:
         """Return each union, or None where it is not allowed, and its merit."""

@@ -22,6 +22,8 @@ SOLID = 0.9
 GATE = 0.7
 W = [1.0, 2.0, 0.15]
 THROUGH = 0.4
+ROUNDS = 3
+SHARES = [0.0, 0.2, 0.2, 0.4, 0.4]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +50,17 @@ def room_cells(plan: FloorPlan, *, tolerance: float = 0.1, seed: int = 0, radius
     regions = Regions(faces, Limits(1.0 - tolerance, 1.0 - tolerance, GATE, THROUGH))
     rng = np.random.default_rng(seed)
     for k in range(runs):
-        regions.merge(rng, 0.0 if k == 0 else 0.05 * (1 + k % 4))
+        regions.merge(regions.single, rng, 0.0 if k == 0 else 0.05 * (1 + k % 4))
     chosen = partition(list(regions.pool.values()), len(faces), lambda r: cost(r, faces), 5.0)
+    for _ in range(ROUNDS):
+        before = len(regions.pool)
+        for share in SHARES:
+            broken = rng.random(len(chosen)) < share
+            start = [part for r, b in zip(chosen, broken, strict=True) for part in ([regions.single[f] for f in sorted(r.faces)] if b else [r])]
+            regions.merge(start, rng, 0.1)
+        if len(regions.pool) == before:
+            break
+        chosen = partition(list(regions.pool.values()), len(faces), lambda r: cost(r, faces), 5.0)
     owner = np.empty(len(faces), dtype=np.intp)
     for k, region in enumerate(chosen):
         owner[list(region.faces)] = k
