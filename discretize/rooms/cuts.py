@@ -12,7 +12,7 @@ import shapely
 from discretize.rooms.rays import Walls
 from numpy.typing import NDArray
 
-__all__ = ["Corners", "askew", "corners", "doorways", "extensions", "necks", "ring_segments"]
+__all__ = ["Corners", "ASKEW", "askew", "corners", "doorways", "extensions", "necks", "ring_segments"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from discretize.rooms.cuts import askew, corners, doorways, extensions, necks, ring_segments, same_cut
+from discretize.rooms.cuts import ASKEW, askew, corners, doorways, extensions, necks, ring_segments, same_cut
 from discretize.rooms.faces import GRID, Faces, arrangement
 from discretize.rooms.fitting import fit
 from discretize.rooms.merging import Limits, Region, Regions
@@ -22,6 +22,7 @@ SOLID = 0.9
 GATE = 0.7
 W = [1.0, 2.0, 0.15]
 THROUGH = 0.4
+KEEP = 1
 ROUNDS = 3
 SHARES = [0.0, 0.2, 0.2, 0.4, 0.4]
 
@@ -84,7 +85,10 @@ def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float, notc
     cuts: list[Array] = []
     rest = np.delete(np.arange(len(segments)), chosen[clear])
     maybe = segments[rest]
-    rank = np.hypot(*(maybe[:, 1] - maybe[:, 0]).T) * askew(space, maybe)
+    factor = askew(space, maybe)
+    length = np.hypot(*(maybe[:, 1] - maybe[:, 0]).T)
+    useful = (factor < ASKEW) | _shortest(ends[rest], length, len(at)) if KEEP else factor < 9
+    maybe, rank = maybe[useful], (factor * length)[useful]
     tree = shapely.STRtree(shapely.linestrings(maybe)) if len(maybe) else None
     for zone in zones.polygons[~zones.sill]:
         if zone.area >= (1.0 - 0.5 * tolerance) * zone.convex_hull.area and not zone.interiors:
@@ -111,3 +115,12 @@ def _distinct(cuts: list[Array]) -> list[Array]:
         if np.hypot(*(s[1] - s[0])) > 0.05 and not any(same_cut(s, o) for o in kept):
             kept.append(s)
     return kept
+
+
+def _shortest(ends: NDArray[np.intp], length: Array, n: int) -> NDArray[np.bool_]:
+    """Whether each neck is the shortest one at one of its corners."""
+    least = np.full(n + 1, np.inf)
+    for side in (0, 1):
+        np.minimum.at(least, ends[:, side], length)
+    least[-1] = 0.0
+    return np.asarray((length[:, None] <= least[ends] + 1e-9).any(1))
