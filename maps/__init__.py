@@ -1,6 +1,31 @@
 """Floor plans: model, validation and repair, one reader per format, bundled plans."""
 
+from maps.drafting import Door, Room, draft_plan, draft_rooms
 from maps.errors import GeomsimError, PlanError, nearest
 from maps.floorplan import FloorPlan, FreeSpace, Label, Repair
+from maps.geojson import read_geojson, write_geojson
+from maps.making import make_plan
+from maps.reading import FORMATS, Format, bundled_names, read_plan
+from maps.writing import write_plan
 
-__all__ = ["FloorPlan", "FreeSpace", "GeomsimError", "Label", "PlanError", "Repair", "nearest"]
+__all__ = [
+    "FORMATS",
+    "Door",
+    "FloorPlan",
+    "Format",
+    "FreeSpace",
+    "GeomsimError",
+    "Label",
+    "PlanError",
+    "Repair",
+    "Room",
+    "bundled_names",
+    "draft_plan",
+    "draft_rooms",
+    "make_plan",
+    "nearest",
+    "read_geojson",
+    "read_plan",
+    "write_geojson",
+    "write_plan",
+]

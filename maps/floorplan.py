@@ -65,6 +65,8 @@ class FloorPlan:
         Door segments that the source has, each with two points, from jamb to jamb.
     labels : tuple of Label
         Names and numbers of rooms that the source has.
+    start : tuple of int
+        Numbers of the cells in which a team starts unless told otherwise, from 1; empty where the source has none.
     source : str
         Where it came from: a file, or "bundled".
     repairs : tuple of Repair
@@ -75,6 +77,7 @@ class FloorPlan:
     space: FreeSpace
     doors: tuple[shapely.LineString, ...] = ()
     labels: tuple[Label, ...] = ()
+    start: tuple[int, ...] = ()
     source: str = ""
     repairs: tuple[Repair, ...] = field(default=())
 
@@ -98,6 +101,7 @@ class FloorPlan:
     @property
     def walls(self) -> NDArray[np.float64]:
         """Wall segments, shape (W, 2, 2): every edge of every ring of the free space, in metres."""
+        # get_rings finds none in a MultiPolygon.
         rings = shapely.get_rings(shapely.get_parts(self.space))
         coords, ring = shapely.get_coordinates(rings, return_index=True)
         follows = ring[1:] == ring[:-1]
