@@ -6,8 +6,9 @@ from functools import cached_property
 
 import numpy as np
 import shapely
-from maps import FloorPlan
 from numpy.typing import NDArray
+
+from maps import FloorPlan
 
 __all__ = ["CellMap", "Portal", "graph_components"]
 
@@ -88,7 +89,7 @@ class CellMap:
 
     @cached_property
     def components(self) -> NDArray[np.intp]:
-        """Connected component of the cell graph for each cell, shape (N,), 0 the one with most area; -1: no body fits."""
+        """Connected component of the graph for each cell, shape (N,), 0 the one with most area; -1: no body fits."""
         enterable = np.isfinite(self.checkpoints[:, 0])
         label = graph_components(len(self), self.edges, np.where(enterable, self.areas, 0.0))
         return np.where(enterable, label, -1)

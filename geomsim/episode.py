@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
 from discretize import CellMap
 from maps import FloorPlan
-from numpy.typing import NDArray
 
 __all__ = ["Episode", "Outcome", "Status"]
 
@@ -41,6 +42,8 @@ class Outcome:
         The cell it was captured in, counted from 0.
     predicted : float
         The chance of capture by then that the belief predicted: p0 after its last step.
+    notes : tuple of str
+        What a person should know of the run, a sentence each; a body that was held up, for instance.
     """
 
     status: Status
@@ -49,6 +52,7 @@ class Outcome:
     position: tuple[float, float] | None
     cell: int | None
     predicted: float
+    notes: tuple[str, ...] = ()
 
     @property
     def captured(self) -> bool:
@@ -140,3 +144,15 @@ class Episode:
         from geomsim.snapshots import write_snapshots
 
         return write_snapshots(self, Path(path), **options)
+
+    def save_frames(self, folder: str | Path, **options: Any) -> Path:
+        """Write every frame of the video as a PNG; see :func:`geomsim.drawing.write_frames` for the options."""
+        from geomsim.drawing import write_frames
+
+        return write_frames(self, Path(folder), **options)
+
+    def save_replay(self, path: str | Path) -> Path:
+        """Write a web page that plays the episode; see :func:`geomsim.replay.write_replay`."""
+        from geomsim.replay import write_replay
+
+        return write_replay(self, Path(path))

@@ -82,7 +82,7 @@ def make_plan(
     free = shapely.union_all([_mend(polygon, done) for polygon in polygons], grid_size=GRID)
     if walls:
         cut = shapely.union_all([_mend(wall, done) for wall in walls], grid_size=GRID)
-        free = shapely.difference(free, cut, grid_size=GRID)
+        free = _without(free, cut)
     free = _without_needles(free, done)
     free = _without_specks(free, where, done)
     simple = shapely.simplify(free, GRID / 2, preserve_topology=True)
@@ -166,15 +166,21 @@ def _lost_edges(polygon: shapely.Polygon, snapped: BaseGeometry) -> shapely.Mult
     return shapely.MultiLineString(list(np.stack([xy[:-1][lost], xy[1:][lost]], axis=1)))
 
 
+def _without(free: BaseGeometry, cut: BaseGeometry) -> BaseGeometry:
+    """Cut something out; on a grid that may leave lines and points behind, which are no space."""
+    rest = shapely.get_parts(shapely.difference(free, cut, grid_size=GRID))
+    return shapely.MultiPolygon([part for part in rest if isinstance(part, shapely.Polygon)])
+
+
 def _without_needles(free: BaseGeometry, done: list[Repair]) -> BaseGeometry:
     """Cut off corners of the free space that end in a point too fine for anything; needles of wall stay."""
-    needles = [triangle for ring in shapely.get_rings(free) for triangle in _needles(ring, free)]
+    needles = [triangle for ring in shapely.get_rings(shapely.get_parts(free)) for triangle in _needles(ring, free)]
     if not needles:
         return free
     cut = shapely.union_all(needles, grid_size=GRID)
     message = f"{len(needles)} needle(s) of free space, the first {_near(needles[0])}, were cut off."
     done.append(Repair("removed spike", message, cut))
-    return shapely.difference(free, cut, grid_size=GRID)
+    return _without(free, cut)
 
 
 def _needles(ring: shapely.LinearRing, free: BaseGeometry) -> list[shapely.Polygon]:

@@ -42,7 +42,7 @@ def read_resplan(path: Path, *, resolution: float | None = None, level: str | in
     if resolution is None:
         raise PlanError(f"{where}: ResPlan's coordinates have no unit; give the resolution, metres for each of them.")
     metres = check_resolution(resolution, where)
-    flats = {str(flat.get("id", k)): _shapes(flat, metres, where) for k, flat in enumerate(load_json(path, where))}
+    flats = dict(_shapes(flat, str(k), metres, where) for k, flat in enumerate(load_json(path, where)))
     areas = {
         name: sum(r.area for kind, rs in flat.items() if kind not in NOT_ROOMS for r in rs)
         for name, flat in flats.items()
@@ -62,13 +62,13 @@ def read_resplan(path: Path, *, resolution: float | None = None, level: str | in
     )
 
 
-def _shapes(flat: Any, metres: float, where: str) -> dict[str, list[shapely.Polygon]]:
+def _shapes(flat: Any, name: str, metres: float, where: str) -> tuple[str, dict[str, list[shapely.Polygon]]]:
     try:
+        name = str(flat.get("id", name))
         found = {kind: shapely.from_wkt(np.array(texts, dtype=object)) for kind, texts in flat["geometries"].items()}
     except (AttributeError, KeyError, TypeError, shapely.GEOSException) as exc:
         raise PlanError(f"{where}: a flat needs 'geometries', lists of well-known text for each kind of room.") from exc
-    scaled = {kind: shapely.transform(shapes, lambda xy: xy * metres) for kind, shapes in found.items()}
-    return {
-        kind: [g for g in shapely.get_parts(shapes) if isinstance(g, shapely.Polygon)]
-        for kind, shapes in scaled.items()
+    scaled = {
+        kind: shapely.get_parts(shapely.transform(shapes, lambda xy: xy * metres)) for kind, shapes in found.items()
     }
+    return name, {kind: [g for g in parts if isinstance(g, shapely.Polygon)] for kind, parts in scaled.items()}

@@ -61,9 +61,9 @@ def straighten(outline: shapely.MultiPolygon, tolerance: float) -> shapely.Multi
         In the unit of the outline.
     """
     simple = shapely.MultiPolygon(list(shapely.get_parts(shapely.simplify(outline, tolerance, preserve_topology=True))))
-    same = (
-        simple.is_valid
-        and len(simple.geoms) == len(outline.geoms)
-        and len(shapely.get_rings(simple)) == len(shapely.get_rings(outline))
-    )
+    same = simple.is_valid and len(simple.geoms) == len(outline.geoms) and len(_rings(simple)) == len(_rings(outline))
     return simple if same else outline
+
+
+def _rings(outline: shapely.MultiPolygon) -> NDArray[np.object_]:
+    return shapely.get_rings(shapely.get_parts(outline))

@@ -111,7 +111,7 @@ def rasterise(
     image = np.where(inside, FREE, UNKNOWN).astype(np.uint8)
     beside = cv2.dilate(inside.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.bool_) & ~inside
     # The free space is to the left of its rings: where there is also some a pixel to the right, the wall is thin.
-    for ring in shapely.segmentize(shapely.get_rings(plan.space), resolution / 2):
+    for ring in shapely.segmentize(shapely.get_rings(shapely.get_parts(plan.space)), resolution / 2):
         xy = (shapely.get_coordinates(ring) - origin) / resolution
         step = np.diff(xy, axis=0)
         middle = (xy[1:] + xy[:-1]) / 2

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+
 from discretize import CellMap, graph_components
 from maps import GeomsimError
-from numpy.typing import NDArray
 
 __all__ = ["GraphError", "SearchGraph"]
 
@@ -128,4 +129,3 @@ class SearchGraph:
         for array in arrays:
             array.setflags(write=False)
         return cls(*arrays)
-

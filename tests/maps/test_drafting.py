@@ -71,7 +71,7 @@ def test_plan_is_the_union_of_its_rooms(sketch):
 
 def test_house_has_the_graph_of_the_paper(monkeypatch):
     doors = []
-    monkeypatch.setattr("maps.drafts.draft_plan", lambda *args, **_: doors.extend(args[2]))
+    monkeypatch.setattr("maps.drafts.house.draft_plan", lambda *args, **_: doors.extend(args[2]))
     DRAFTS["house"]()
     assert {tuple(sorted(d.rooms)) for d in doors} == HOUSE
     assert all(0.9 <= d.width <= 1.0 for d in doors)

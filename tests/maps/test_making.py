@@ -99,6 +99,13 @@ def test_same_space_gives_same_plan_whatever_the_order_of_its_rings():
     assert one == two
 
 
+def test_walls_are_the_edges_of_every_part():
+    hole = box(1, 1, 2, 2)
+    plan = make_plan([ROOM.difference(hole), box(7, 0, 9, 2)], name="two parts")
+    assert plan.walls.shape == (12, 2, 2)
+    assert np.hypot(*(plan.walls[:, 1] - plan.walls[:, 0]).T).sum() == pytest.approx(plan.space.length)
+
+
 def test_obstacles_are_cut_out():
     plan = make_plan(ROOM, name="room", solid=[box(1, 1, 2, 2), box(1.5, 1, 3, 2)])
     assert plan.area == pytest.approx(18.0)

@@ -1,0 +1,143 @@
+"""What a robot sees: the exact visibility polygon, within a range and a field of view."""
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from maps import FloorPlan
+
+__all__ = ["Walls"]
+
+# Rays at least this close, so that a circle of sight looks round.
+_ARC_STEP = np.radians(4.0)
+
+_ALL_AROUND = 2 * np.pi - 1e-9
+
+
+class Walls:
+    """The walls of a plan, ready to be seen from many places.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        Its free space is to the left of every wall segment.
+    """
+
+    def __init__(self, plan: FloorPlan) -> None:
+        segments = _free_on_the_left(plan)
+        self._start, self._end = segments[:, 0], segments[:, 1]
+        along = self._end - self._start
+        length = np.hypot(*along.T)
+        self._normal = np.stack([-along[:, 1], along[:, 0]], axis=1) / length[:, None]
+        self._offset = np.einsum("ij,ij->i", self._normal, self._start)
+        x0, y0, x1, y1 = plan.bounds
+        self._reach = 2.0 * float(np.hypot(x1 - x0, y1 - y0)) + 1.0
+
+    def seen_from(
+        self, eye: NDArray[np.float64], reach: float = np.inf, heading: float = 0.0, field: float = 2 * np.pi
+    ) -> NDArray[np.float64]:
+        """Return the polygon that is seen.
+
+        Between two neighbouring wall corners, in angle around the eye, one and the same wall is nearest. So it is
+        enough to find for each such interval the nearest of the walls that span it, which takes as many steps as
+        rays cross walls; nothing is sampled.
+
+        Parameters
+        ----------
+        eye : ndarray, shape (2,)
+            Within the free space, in no corner of it, metres.
+        reach : float
+            How far it sees, metres.
+        heading : float
+            Middle of the field of view, radians.
+        field : float
+            Width of the field of view, radians.
+
+        Returns
+        -------
+        ndarray, shape (k, 2)
+            Corners counterclockwise; a circle of sight has one every four degrees at least.
+        """
+        limit = min(reach, self._reach)
+        distance = self._normal @ eye - self._offset
+        facing = distance > -1e-9
+        start, end = self._start[facing] - eye, self._end[facing] - eye
+        normal, distance = -self._normal[facing], np.maximum(distance[facing], 1e-9)
+        first, last = np.arctan2(start[:, 1], start[:, 0]), np.arctan2(end[:, 1], end[:, 0])
+        span = (last - first) % (2 * np.pi)
+        # A wall seen edge-on spans nothing; rounding may make that a whole turn less a little.
+        kept = (span > 0) & (span < np.pi + 1e-6) & (distance < limit)
+        normal, distance, first, last, span = (a[kept] for a in (normal, distance, first, last, span))
+
+        angles = np.unique(np.concatenate([first, last, self._extra_angles(normal, distance, limit, heading, field)]))
+        width = np.diff(angles, append=angles[:1] + 2 * np.pi)
+        middle = angles + width / 2
+        count = len(angles)
+
+        low, high = np.searchsorted(angles, first), np.searchsorted(angles, last)
+        crossed = (high - low) % count
+        wall = np.repeat(np.arange(len(first)), crossed)
+        step = np.arange(len(wall)) - np.repeat(np.cumsum(crossed) - crossed, crossed)
+        interval = (low[wall] + step) % count
+
+        # Nearness, one over the distance along a ray, is linear in the ray's direction, finite even along a wall.
+        slope = normal / distance[:, None]
+        nearness = slope[wall, 0] * np.cos(middle)[interval] + slope[wall, 1] * np.sin(middle)[interval]
+        nearest = np.full(count, 1.0 / limit)
+        np.maximum.at(nearest, interval, nearness)
+        winner = np.full(count, -1)
+        won = nearness == nearest[interval]
+        winner[interval[won]] = wall[won]
+        seen: NDArray[np.float64] = eye + self._outline(angles, middle, winner, slope, limit, heading, field)
+        return seen
+
+    def _extra_angles(
+        self,
+        normal: NDArray[np.float64],
+        distance: NDArray[np.float64],
+        limit: float,
+        heading: float,
+        field: float,
+    ) -> NDArray[np.float64]:
+        """Where something begins that is no wall corner: an arc, a wall's end of range, the field of view."""
+        foot = np.arctan2(normal[:, 1], normal[:, 0])
+        half = np.arccos(np.clip(distance / limit, 0, 1))
+        arc = np.arange(-np.pi, np.pi, _ARC_STEP)
+        edges = [] if field >= _ALL_AROUND else [heading - field / 2, heading + field / 2]
+        extra = np.concatenate([arc, foot - half, foot + half, edges])
+        turned: NDArray[np.float64] = np.arctan2(np.sin(extra), np.cos(extra))
+        return turned
+
+    @staticmethod
+    def _outline(
+        angles: NDArray[np.float64],
+        middle: NDArray[np.float64],
+        winner: NDArray[np.intp],
+        slope: NDArray[np.float64],
+        limit: float,
+        heading: float,
+        field: float,
+    ) -> NDArray[np.float64]:
+        """Join the ends of the nearest wall, or the circle of sight, in each interval."""
+        following = np.append(angles[1:], angles[0])
+        lines = np.vstack([slope, [[0.0, 0.0]]])[winner]  # the last line, of no wall, is for winner -1
+        corners = []
+        for angle in (angles, following):
+            ray = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            nearness = np.maximum(np.sum(lines * ray, axis=1), 1.0 / limit)
+            corners.append(ray / nearness[:, None])
+        points = np.stack(corners, axis=1)
+        if field >= _ALL_AROUND:
+            return points.reshape(-1, 2)
+        turned = (middle - (heading - field / 2)) % (2 * np.pi)
+        order = np.argsort(turned, kind="stable")
+        inside = order[turned[order] < field]
+        return np.vstack([[[0.0, 0.0]], points[inside].reshape(-1, 2)])
+
+
+def _free_on_the_left(plan: FloorPlan) -> NDArray[np.float64]:
+    """Return the wall segments, shape (W, 2, 2), each with the free space to its left."""
+    rings = shapely.get_rings(shapely.orient_polygons(plan.space))
+    coords, ring = shapely.get_coordinates(rings, return_index=True)
+    follows = ring[1:] == ring[:-1]
+    return np.stack([coords[:-1][follows], coords[1:][follows]], axis=1)

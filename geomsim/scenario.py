@@ -1,0 +1,239 @@
+"""The scenario: everything that a run depends on, as a TOML file, as flags, and as it is given back."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
+from discretize import CellMap, convex_cells
+from geomsim.evaders import EVADERS, make_evader_model
+from geomsim.pursuit import CAPTURE_RULES, Timing
+from geomsim.sensing import Sensor
+from geomsim.team import Evader, Team
+from maps import FloorPlan, GeomsimError, nearest, read_plan
+from planners import (
+    PLANNERS,
+    AreaSpeedDegree,
+    MotionModel,
+    Planner,
+    StationaryMotion,
+    UniformMotion,
+    make_planner,
+)
+
+__all__ = ["Scenario", "ScenarioError", "describe", "read_scenario"]
+
+
+class ScenarioError(GeomsimError):
+    """A scenario that cannot be read or used; the message names the file and the key."""
+
+
+#: what a team may believe of the evader's motion, by name
+MOTIONS: dict[str, Callable[[float], MotionModel]] = {
+    "area-speed-degree": AreaSpeedDegree,
+    "uniform": lambda _: UniformMotion(),
+    "stationary": lambda _: StationaryMotion(),
+}
+
+_Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+
+class Scenario(BaseModel):
+    """Everything that a run depends on. Each key is also a flag of the command line, with dashes.
+
+    Lengths in metres, times in seconds, cell numbers as in the pictures, from 1.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    plan: str = "office"
+    seed: Annotated[int, Field(ge=0)] = 0
+    pursuers: Annotated[int, Field(ge=1, le=1000)] = 2
+    start: tuple[int, ...] = ()
+    planner: str = "decoupled"
+    cost: str | None = None
+    depth: Annotated[int, Field(ge=1)] | None = None
+    capture: str = "sight"
+    range: Annotated[float, Field(gt=0)] = math.inf
+    fov_degrees: Annotated[float, Field(gt=0, le=360)] = 360.0
+    speed: _Positive = 1.0
+    radius: _Positive = 0.2
+    evader: str = "centroid-boundary"
+    evader_start: int | None = None
+    evader_speed: _Positive = 1.0
+    evader_radius: _Positive = 0.2
+    motion: str = "area-speed-degree"
+    method: str = "exact"
+    time_limit: _Positive = 1800.0
+    belief_step: _Positive = 1.0
+    physics_step: _Positive = 0.1
+
+    @field_validator("start", mode="before")
+    @classmethod
+    def _listed(cls, value: object) -> object:
+        return tuple(value) if isinstance(value, list) else value
+
+    @field_validator("range", mode="before")
+    @classmethod
+    def _unlimited(cls, value: object) -> object:
+        return math.inf if value is None else value
+
+    @field_validator("capture", "evader", "motion")
+    @classmethod
+    def _known(cls, value: str, info: Any) -> str:
+        known: dict[str, Iterable[str]] = {"capture": CAPTURE_RULES, "evader": EVADERS, "motion": MOTIONS}
+        valid = tuple(known[info.field_name])
+        if value not in valid:
+            raise ValueError(f"is not {value!r}: {nearest(value, valid)}")
+        return value
+
+    def team(self) -> Team:
+        """Make the team of pursuers."""
+        return Team(
+            pursuers=self.pursuers,
+            planner=make_planner(self.planner, cost=self.cost, depth=self.depth),
+            start=self.start,
+            speed=self.speed,
+            radius=self.radius,
+            sensor=Sensor(self.range, math.radians(self.fov_degrees)),
+        )
+
+    def quarry(self) -> Evader:
+        """Make the evader."""
+        return Evader(
+            model=make_evader_model(self.evader),
+            start=self.evader_start,
+            speed=self.evader_speed,
+            radius=self.evader_radius,
+        )
+
+    def belief_motion(self) -> MotionModel:
+        """Make the motion model that the pursuers believe in."""
+        return MOTIONS[self.motion](self.evader_speed)
+
+    def timing(self) -> Timing:
+        """Make the clocks."""
+        return Timing(self.time_limit, self.belief_step, self.physics_step)
+
+    def place(self) -> tuple[FloorPlan, CellMap]:
+        """Read the plan and cut it."""
+        plan = read_plan(self.plan)
+        return plan, convex_cells(plan, method=self.method, radius=max(self.radius, self.evader_radius))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what a scenario file would hold: plain values, a planner's defaults told, no keys that mean "none"."""
+        told = self.model_dump(mode="python") | _planner_keys(
+            make_planner(self.planner, cost=self.cost, depth=self.depth)
+        )
+        told["start"] = list(self.start)
+        return _told(told)
+
+    def as_toml(self) -> str:
+        """Return the text of a scenario file that repeats the run."""
+        import tomli_w
+
+        return tomli_w.dumps(self.as_dict())
+
+
+def read_scenario(path: Path | None, flags: dict[str, Any]) -> Scenario:
+    """Read a scenario file and let flags override its keys.
+
+    Parameters
+    ----------
+    path : Path or None
+        A TOML file; None for the defaults. A relative plan file in it is looked for beside it.
+    flags : dict
+        Keys and values that were given on the command line.
+
+    Raises
+    ------
+    ScenarioError
+        If the file cannot be read, or a key or value is wrong; the message names it and the nearest valid one.
+    """
+    told = {} if path is None else _load(path)
+    if path is not None and "plan" not in flags:
+        beside = path.parent / str(told.get("plan", ""))
+        if beside.is_file():
+            told["plan"] = str(beside)
+    for key in told:
+        if key not in Scenario.model_fields:
+            raise ScenarioError(f"{path}: unknown key {key!r}; {nearest(key, Scenario.model_fields)}")
+    try:
+        return Scenario.model_validate(told | flags)
+    except ValidationError as exc:
+        raise ScenarioError(_sentence(exc, path, flags)) from exc
+
+
+def _load(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as exc:
+        raise ScenarioError(f"Cannot read the scenario {path}: {exc.strerror}.") from exc
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as exc:
+        raise ScenarioError(f"{path} is not valid TOML: {exc}.") from exc
+
+
+def _sentence(exc: ValidationError, path: Path | None, flags: dict[str, Any]) -> str:
+    error = exc.errors()[0]
+    key = str(error["loc"][0])
+    where = f"--{key.replace('_', '-')}" if key in flags or path is None else f"{path}: {key}"
+    if error["type"] == "value_error":
+        return f"{where} {error['ctx']['error']}"
+    reason = error["msg"].removeprefix("Input ")
+    return f"{where} {reason}, but is {error['input']!r}."
+
+
+def describe(
+    plan: FloorPlan,
+    cells: CellMap,
+    team: Team,
+    evader: Evader,
+    seed: int,
+    capture: str,
+    motion: MotionModel | None,
+    timing: Timing,
+) -> dict[str, Any]:
+    """Tell a run made from Python in the keys of a scenario file.
+
+    What is registered under a name is told by it; a user's own class by the class's name.
+    """
+    kinds: dict[type, str] = {kind: name for name, kind in EVADERS.items()}
+    motions = {type(make(1.0)): name for name, make in MOTIONS.items()}
+    told: dict[str, Any] = {
+        "plan": plan.name if plan.source == "bundled" else plan.source or plan.name,
+        "seed": seed,
+        "pursuers": team.pursuers,
+        "start": list(team.start),
+        **_planner_keys(team.planner),
+        "capture": capture,
+        "range": team.sensor.range,
+        "fov_degrees": math.degrees(team.sensor.field_of_view),
+        "speed": team.speed,
+        "radius": team.radius,
+        "evader": kinds.get(type(evader.model), type(evader.model).__name__),
+        "evader_start": evader.start,
+        "evader_speed": evader.speed,
+        "evader_radius": evader.radius,
+        "motion": "area-speed-degree" if motion is None else motions.get(type(motion), type(motion).__name__),
+        "method": cells.method,
+        "time_limit": timing.limit,
+        "belief_step": timing.belief_step,
+        "physics_step": timing.physics_step,
+    }
+    return _told(told)
+
+
+def _planner_keys(planner: Planner) -> dict[str, Any]:
+    """Tell a planner by its registered name, a user's own by its class's, and its parameters."""
+    names = {entry.make: name for name, entry in PLANNERS.items()}
+    told = {key: getattr(planner, key) for key in getattr(planner, "__dataclass_fields__", ())}
+    return {"planner": names.get(type(planner), type(planner).__name__), **told}
+
+
+def _told(keys: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in keys.items() if value is not None and value != math.inf and value != []}
