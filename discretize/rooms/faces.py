@@ -1,6 +1,8 @@
 """The arrangement of walls and cuts: small faces, and which of them share how much boundary."""
 
+from cmath import phase
 from dataclasses import dataclass
+from math import cos, sin
 
 import numpy as np
 import shapely
@@ -26,23 +28,28 @@ class Border:
         Of all of them, metres.
     door : float
         Length of those that lie in a doorway, metres.
+    doubled : complex
+        Sum of each piece's length turned by twice its angle: directions add up so whichever way pieces point.
     """
 
     pieces: Array
     length: float
     door: float
+    doubled: complex
 
     def __add__(self, other: "Border") -> "Border":
-        pieces = np.concatenate([self.pieces, other.pieces])
-        return Border(pieces, self.length + other.length, self.door + other.door)
+        return Border(
+            np.concatenate([self.pieces, other.pieces]),
+            self.length + other.length,
+            self.door + other.door,
+            self.doubled + other.doubled,
+        )
 
     @property
     def direction(self) -> Array:
-        """Unit vector along the border: directions of pieces add up as doubled angles, weighted by length."""
-        d = self.pieces[:, 1] - self.pieces[:, 0]
-        length = np.hypot(d[:, 0], d[:, 1])
-        angle = 0.5 * np.arctan2((2 * d[:, 0] * d[:, 1] / length).sum(), ((d[:, 0] ** 2 - d[:, 1] ** 2) / length).sum())
-        return np.array([np.cos(angle), np.sin(angle)])
+        """Unit vector along the border."""
+        angle = 0.5 * phase(self.doubled)
+        return np.array([cos(angle), sin(angle)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +120,7 @@ def _adjacency(polygons: NDArray[np.object_], doorways: shapely.Geometry, doors:
     i, j = face[order[shared]], face[order[shared + 1]]
     d = GRID * (key[shared, 2:] - key[shared, :2])
     length = np.hypot(*d.T)
+    doubled = (d[:, 0] + 1j * d[:, 1]) ** 2 / length
     ends = GRID * np.stack([key[shared, :2], key[shared, 2:]], axis=1)
     middle = shapely.points(ends.mean(1))
     in_doorway = np.where(shapely.dwithin(doorways, middle, 2 * GRID), length, 0.0)
@@ -127,7 +135,9 @@ def _adjacency(polygons: NDArray[np.object_], doorways: shapely.Geometry, doors:
     for start, stop in zip(starts.tolist(), np.append(starts[1:], len(pairs)).tolist(), strict=False):
         rows = order[start:stop]
         pair = (int(pairs[start, 0]), int(pairs[start, 1]))
-        borders[pair] = Border(ends[rows], float(length[rows].sum()), float(in_doorway[rows].sum()))
+        borders[pair] = Border(
+            ends[rows], float(length[rows].sum()), float(in_doorway[rows].sum()), complex(doubled[rows].sum())
+        )
         if on_door[rows].any():
             barred.add(pair)
     return Faces(polygons, borders, frozenset(barred), _sills(polygons, borders))

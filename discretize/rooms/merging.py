@@ -7,6 +7,7 @@ boundary is also compared with the width of both sides.
 import heapq
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import shapely
@@ -81,7 +82,8 @@ class Region:
 
     def extent(self, direction: Array) -> float:
         """Length of its shadow on a line, metres."""
-        return float(np.ptp(self.hull @ direction))
+        along = self.hull @ direction
+        return float(along.max() - along.min())
 
 
 class Regions:
@@ -183,31 +185,38 @@ class Regions:
         """Return each union, or None where it is not allowed, and its merit."""
         todo = [(a, b, border) for a, b, border in pairs if _key(a, b) not in self._tried]
         if todo:
-            points = [np.concatenate([a.hull, b.hull]) for a, b, _ in todo]
-            which = np.repeat(np.arange(len(todo)), [len(p) for p in points])
+            points = [corner for a, b, _ in todo for corner in (a.hull, b.hull)]
+            which = np.repeat(np.arange(len(todo)), [len(a.hull) + len(b.hull) for a, b, _ in todo])
             hulls = shapely.convex_hull(shapely.multipoints(np.concatenate(points), indices=which))
-            areas = shapely.area(hulls).tolist()
-            for (a, b, border), hull, hull_area in zip(todo, hulls, areas, strict=True):
-                area = a.area + b.area
-                direction = border.direction
-                gate = border.length / max(min(a.extent(direction), b.extent(direction)), 1e-9)
-                convexity = area / hull_area
-                allowed = convexity >= self._limits.convexity and (gate >= self._limits.gate or convexity >= 0.995)
-                # What lies within the thickness of a wall may join the room on either side of the doorway.
-                sill = a.sill or b.sill
-                allowed &= sill or border.door <= 0.3 * border.length
-                union, sight = None, 0.0
-                if allowed:
-                    through = crossing(a.points, b.points, border.pieces)
-                    sight = (a.sight * a.area**2 + b.sight * b.area**2 + 2 * a.area * b.area * through) / area**2
-                if sight >= self._limits.sight and (through >= self._limits.through or sill):
-                    faces = a.faces | b.faces
-                    points = _thin(a, b)
-                    shut = a.open + b.open - 2 * (border.length - border.door)
-                    corners = shapely.get_coordinates(hull)[:-1]
-                    union = self.pool.get(faces) or Region(faces, area, corners, hull_area, points, sight, shut)
-                self._tried[_key(a, b)] = (union, convexity + sight + 0.2 * min(gate, 1.0) - 2.0 * sill)
+            for (a, b, border), hull, hull_area in zip(todo, hulls, shapely.area(hulls).tolist(), strict=True):
+                self._tried[_key(a, b)] = self._union(a, b, border, hull, hull_area)
         return [self._tried[_key(a, b)] for a, b, _ in pairs]
+
+    def _union(
+        self, a: Region, b: Region, border: Border, hull: shapely.Polygon, hull_area: float
+    ) -> tuple[Region | None, float]:
+        """Return the union of two regions if it is allowed, and its merit."""
+        limits = self._limits
+        area = a.area + b.area
+        convexity = area / hull_area
+        # What lies within the thickness of a wall may join the room on either side of the doorway.
+        sill = a.sill or b.sill
+        if convexity < limits.convexity or (border.door > 0.3 * border.length and not sill):
+            return None, 0.0
+        direction = border.direction
+        gate = border.length / max(min(a.extent(direction), b.extent(direction)), 1e-9)
+        if gate < limits.gate and convexity < 0.995:
+            return None, 0.0
+        through = crossing(a.points, b.points, border.pieces)
+        sight = (a.sight * a.area**2 + b.sight * b.area**2 + 2 * a.area * b.area * through) / area**2
+        if sight < limits.sight or (through < limits.through and not sill):
+            return None, 0.0
+        faces = a.faces | b.faces
+        union = self.pool.get(faces)
+        if union is None:
+            shut = a.open + b.open - 2 * (border.length - border.door)
+            union = Region(faces, area, shapely.get_coordinates(hull)[:-1], hull_area, _thin(a, b), sight, shut)
+        return union, convexity + sight + 0.2 * min(gate, 1.0) - 2.0 * sill
 
 
 def _key(a: Region, b: Region) -> tuple[frozenset[int], frozenset[int]]:
@@ -239,10 +248,14 @@ def _thin(a: Region, b: Region, most: int = 16) -> Array:
     """Return points of both regions in proportion to their areas."""
     n = min(most, len(a.points) + len(b.points))
     of_a = min(max(round(n * a.area / (a.area + b.area)), 1), n - 1)
-    chosen = []
-    for region, count in ((a, of_a), (b, n - of_a)):
-        chosen.append(region.points[np.linspace(0, len(region.points) - 1, min(count, len(region.points))).round().astype(int)])
-    return np.concatenate(chosen)
+    kept_a, kept_b = _evenly(len(a.points), of_a), _evenly(len(b.points), n - of_a)
+    return np.concatenate([a.points[kept_a], b.points[kept_b]])
+
+
+@cache
+def _evenly(n: int, count: int) -> NDArray[np.intp]:
+    """Return at most ``count`` of ``n`` numbers, spread evenly."""
+    return np.linspace(0, n - 1, min(count, n)).round().astype(np.intp)
 
 
 # The plastic number's lattice: any leading part of it is spread evenly over the unit square.

@@ -8,10 +8,27 @@ from discretize.rooms.merging import Region
 __all__ = ["partition"]
 
 
-def partition(pool: Sequence[Region], n: int, cost: Callable[[Region], float], seconds: float) -> list[Region]:
-    """Choose regions that cover each of ``n`` faces exactly once at least cost.
+def partition(
+    pool: Sequence[Region],
+    n: int,
+    cost: Callable[[Region], float],
+    sound: Callable[[Region], bool],
+    seconds: float,
+) -> list[Region]:
+    """Choose regions that cover each face exactly once at least cost.
 
-    The pool must contain every single face. Faces that no region links are solved apart.
+    Parameters
+    ----------
+    pool : sequence of Region
+        Must contain every single face.
+    n : int
+        Number of faces.
+    cost : callable
+        Of a region; their sum is minimised.
+    sound : callable
+        A slower test that a chosen region must pass; others are chosen until all do.
+    seconds : float
+        Longest time for each part of the plan that no region links to another; the best found by then counts.
     """
     parent = list(range(n))
 
@@ -30,8 +47,19 @@ def partition(pool: Sequence[Region], n: int, cost: Callable[[Region], float], s
         groups.setdefault(root(next(iter(region.faces))), []).append(region)
     chosen: list[Region] = []
     for group in groups.values():
-        chosen += group if len(group) == 1 else _solve(group, cost, seconds)
+        chosen += group if len(group) == 1 else _sound(group, cost, sound, seconds)
     return chosen
+
+
+def _sound(
+    pool: list[Region], cost: Callable[[Region], float], sound: Callable[[Region], bool], seconds: float
+) -> list[Region]:
+    while True:
+        chosen = _solve(pool, cost, seconds)
+        bad = {region.faces for region in chosen if len(region.faces) > 1 and not sound(region)}
+        if not bad:
+            return chosen
+        pool = [region for region in pool if region.faces not in bad]
 
 
 def _solve(pool: list[Region], cost: Callable[[Region], float], seconds: float) -> list[Region]:
