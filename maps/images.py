@@ -10,8 +10,9 @@ import shapely
 
 from maps.errors import PlanError
 from maps.floorplan import FloorPlan, Repair
+from maps.noise import Mask
 from maps.pictures import read_picture
-from maps.raster import Mask, plan_from_mask
+from maps.raster import plan_from_mask
 from maps.tracing import straighten, trace
 from maps.units import check_resolution
 
@@ -21,7 +22,7 @@ WHITE = 0.9
 """A pixel is free if it is at least this bright: furniture is grey in some pictures, and white not pure in others."""
 
 
-def read_image(path: Path, *, resolution: float | None = None) -> FloorPlan:
+def read_image(path: Path, *, resolution: float | None = None, structure: bool | None = None) -> FloorPlan:
     """Read a picture; noise is repaired as :mod:`maps.raster` says. Its lower left corner is the origin.
 
     Parameters
@@ -30,6 +31,8 @@ def read_image(path: Path, *, resolution: float | None = None) -> FloorPlan:
         A PNG, PGM, JPEG, BMP or TIFF file.
     resolution : float
         Size of a pixel, metres. There is no default.
+    structure : bool or None
+        Whether to take out furniture; None: if the picture is plainly a scan.
 
     Raises
     ------
@@ -42,7 +45,7 @@ def read_image(path: Path, *, resolution: float | None = None) -> FloorPlan:
     metres = check_resolution(resolution, where)
     brightness, opaque = read_picture(path, where)
     free, repairs = _without_outside((brightness >= WHITE) & opaque, metres)
-    return plan_from_mask(free, metres, name=path.stem, source=where, repairs=repairs)
+    return plan_from_mask(free, metres, name=path.stem, source=where, structure=structure, repairs=repairs)
 
 
 def _without_outside(free: Mask, resolution: float) -> tuple[Mask, list[Repair]]:

@@ -42,7 +42,7 @@ class Format:
     read : callable
         Takes the path and, by name, those of the options that it knows.
     options : tuple of str
-        Which of ``resolution``, ``level`` and ``units`` it knows.
+        Which of ``resolution``, ``level``, ``units`` and ``structure`` it knows.
     sign : bytes
         A regular expression that content of this kind matches; of two kinds with one suffix the first that matches
         is taken.
@@ -57,6 +57,7 @@ class Format:
 
 JSON = (".geojson", ".json")
 YAML = (".yaml", ".yml")
+PICTURES = (".png", ".pgm", ".bmp", ".jpg", ".jpeg", ".tif", ".tiff")
 
 FORMATS = (
     Format("OpenStreetMap indoor", JSON, read_osm, ("level",), rb'"indoor"\s*:'),
@@ -65,8 +66,10 @@ FORMATS = (
     Format("ResPlan", JSON, read_resplan, ("resolution", "level"), rb'"geometries"\s*:\s*{'),
     Format("GeoJSON", JSON, read_geojson, ("units",)),
     Format("PyRoboSim world", YAML, read_pyrobosim, (), rb"(?m)^rooms\s*:"),
-    Format("ROS map", YAML, read_ros),
-    Format("picture", (".png", ".pgm", ".bmp", ".jpg", ".jpeg", ".tif", ".tiff"), read_image, ("resolution",)),
+    Format("ROS map", YAML, read_ros, ("structure",)),
+    Format(
+        "picture", (".png", ".pgm", ".bmp", ".jpg", ".jpeg", ".tif", ".tiff"), read_image, ("resolution", "structure")
+    ),
     Format("well-known text", (".wkt",), read_wkt, ("units",)),
     Format("Moving AI map", (".map",), read_movingai, ("resolution",)),
     Format("DXF drawing", (".dxf",), read_dxf, ("units",)),
@@ -89,6 +92,7 @@ def read_plan(
     resolution: float | None = None,
     level: str | int | None = None,
     units: str | None = None,
+    structure: bool | None = None,
 ) -> FloorPlan:
     """Read a floor plan.
 
@@ -102,6 +106,9 @@ def read_plan(
         Which storey, where a file holds several; the largest by default.
     units : str or None
         Unit of the coordinates ("m", "mm", "ft", ...), where the file does not say it.
+    structure : bool or None
+        Whether furniture is taken out of a scanned map and only its walls kept; by default that is done where the map
+        is plainly a scan, and the repairs say so.
 
     Raises
     ------
@@ -110,7 +117,7 @@ def read_plan(
         that this kind of file has no use for.
     """
     given = str(name_or_path)
-    options = {"resolution": resolution, "level": level, "units": units}
+    options = {"resolution": resolution, "level": level, "units": units, "structure": structure}
     options = {key: value for key, value in options.items() if value is not None}
     if given in bundled_names():
         _check_options("bundled plan", (), options, given)

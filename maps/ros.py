@@ -28,13 +28,15 @@ MODES = ("trinary", "scale", "raw")
 KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 
 
-def read_ros(path: Path) -> FloorPlan:
+def read_ros(path: Path, *, structure: bool | None = None) -> FloorPlan:
     """Read a ROS map; scanner noise is repaired as :mod:`maps.raster` says.
 
     Parameters
     ----------
     path : Path
         The ``.yaml`` file; the image is where it says, from its own folder.
+    structure : bool or None
+        Whether to take out furniture; None: if the map is plainly a scan.
 
     Raises
     ------
@@ -70,7 +72,14 @@ def read_ros(path: Path) -> FloorPlan:
     unknown, repairs = _saved_as_unknown(brightness, free)
     x, y, yaw = (float(v) for v in origin)
     return plan_from_mask(
-        free & ~unknown, resolution, name=path.stem, source=where, origin=(x, y), yaw=yaw, repairs=repairs
+        free & ~unknown,
+        resolution,
+        name=path.stem,
+        source=where,
+        origin=(x, y),
+        yaw=yaw,
+        structure=structure,
+        repairs=repairs,
     )
 
 

@@ -129,3 +129,57 @@ def test_any_noise_at_all_gives_a_sound_plan_or_a_sentence(noise):
         assert plan.area <= free.sum() * 0.05**2 * 1.25
         return
     assert "free space" in message or "no wall" in message
+
+
+# Structure mode
+
+
+def furnished(chairs, shape=(200, 200)):
+    """A room of 8 m x 8 m with a pillar-like leg of 0.2 m at each of the given places."""
+    free = drawn((20, 20, 160, 160), shape=shape)
+    for x, y in chairs:
+        free[y : y + 4, x : x + 4] = False
+    return free
+
+
+GRID = [(x, y) for x in range(40, 160, 20) for y in range(40, 160, 20)]
+
+
+def test_the_scan_of_a_furnished_room_keeps_its_walls_only():
+    plan = plan_of(furnished(GRID))
+    assert plan.space.equals(box(1, 1, 9, 9))
+    assert [repair.kind for repair in plan.repairs] == ["removed furniture"]
+    assert "plainly a scan: 36 piece(s)" in plan.repairs[0].message
+    assert plan.repairs[0].geometry.area == pytest.approx(36 * 0.04)
+
+
+def test_a_few_pillars_are_no_scan():
+    plan = plan_of(furnished(GRID[:1]))
+    assert plan.repairs == ()
+    assert plan.area == pytest.approx(64 - 0.04)
+
+
+def test_structure_mode_is_as_asked_for():
+    kept = plan_of(furnished(GRID), structure=False)
+    assert kept.repairs == ()
+    assert kept.area == pytest.approx(64 - 36 * 0.04)
+    cleared = plan_of(furnished(GRID[:1]), structure=True)
+    assert cleared.area == pytest.approx(64)
+    assert "as asked for: 1 piece(s)" in cleared.repairs[0].message
+
+
+def test_walls_that_stand_alone_are_no_furniture():
+    free = furnished(GRID)
+    free[30:34, 60:120] = False
+    free[100:104, 66:86] = False
+    free[165:185, 100:102] = False
+    plan = plan_of(free)
+    assert 64 - plan.area == pytest.approx(60 * 4 * 0.0025 + 20 * 4 * 0.0025 + 2 * 15 * 0.0025, rel=0.1)
+
+
+def test_dead_ends_are_closed_and_passages_are_not():
+    two = drawn((10, 10, 60, 60), (90, 10, 60, 60), (70, 30, 20, 9), (30, 70, 9, 25))
+    plan = plan_of(two, structure=True)
+    assert len(plan.parts) == 1
+    assert [repair.kind for repair in plan.repairs] == ["removed furniture", "closed bay"]
+    assert plan.area == pytest.approx((2 * 60 * 60 + 20 * 9) * 0.0025, rel=0.01)
