@@ -123,7 +123,7 @@ def absorb(faces: Faces, owner: NDArray[np.intp], radius: float) -> NDArray[np.i
             near.setdefault(a, {})[b] = near.get(a, {}).get(b, 0.0) + length
             near.setdefault(b, {})[a] = near[a][b]
     shapes = [shapely.coverage_union_all(faces.polygons[owner == k]) for k in range(owner.max() + 1)]
-    small = [k for k, s in enumerate(shapes) if s.area < (4 * radius) ** 2 or shapely.buffer(s, -radius).is_empty]
+    small = [k for k, s in enumerate(shapes) if s.area < (4 * radius) ** 2 or shapely.buffer(s, -1.5 * radius).is_empty]
     for k in sorted(small, key=lambda k: shapes[k].area):
         if not near.get(k):
             continue
