@@ -25,6 +25,9 @@ THROUGH = 0.4
 SHARES = (0.0, 0.2, 0.2, 0.4, 0.4)
 W = [1.0, 2.0, 0.15]
 EFFORT = 6000
+SCANLIKE = True
+CL = 4.0
+DET = 1.0
 ROUNDS = 2
 
 
@@ -45,7 +48,8 @@ class RoomCut:
 
 
 def room_cells(plan: FloorPlan, *, tolerance: float = 0.1, seed: int = 0, radius: float = 0.2) -> RoomCut:
-    space = structure(plan.space, detail=radius / 2, clutter=4 * radius)
+    scan = SCANLIKE and any(repair.kind == "removed furniture" for repair in plan.repairs)
+    space = structure(plan.space, detail=radius / 2 * (DET if scan else 1), clutter=4 * radius, furniture=CL if scan else 0.0)
     doors = np.array([shapely.get_coordinates(d)[[0, -1]] for d in plan.doors]).reshape(-1, 2, 2)
     cuts, doorway = candidate_cuts(space, doors, tolerance, 2 * radius)
     faces = arrangement(space, cuts, doorway, doors)

@@ -6,9 +6,11 @@ import shapely
 __all__ = ["structure"]
 
 GRID = 1e-3
+SOLID = 0.4  # least share of that rectangle that furniture fills; walls that meet fill less
+SLENDER = 3.0  # how many times longer than wide a piece of wall is at least
 
 
-def structure(space: shapely.Geometry, detail: float, clutter: float) -> shapely.MultiPolygon:
+def structure(space: shapely.Geometry, detail: float, clutter: float, furniture: float) -> shapely.MultiPolygon:
     """Fill small obstacles that stand free and straighten walls.
 
     Parameters
@@ -19,10 +21,12 @@ def structure(space: shapely.Geometry, detail: float, clutter: float) -> shapely
         Walls move by at most this, metres.
     clutter : float
         An obstacle that touches no wall and is no longer than this is filled, metres.
+    furniture : float
+        So is one no longer than this that is not slender, as a piece of wall is, metres.
     """
     parts, thin = [], []
     for part in shapely.get_parts(space):
-        holes = [ring for ring in part.interiors if _span(ring) > clutter]
+        holes = [ring for ring in part.interiors if not _is_clutter(ring, clutter, furniture)]
         slim = [shapely.area(hole := shapely.Polygon(ring)) / hole.length < detail for ring in holes]
         thin += [shapely.Polygon(ring) for ring, is_slim in zip(holes, slim, strict=True) if is_slim]
         thick = [_from_outermost(ring) for ring, is_slim in zip(holes, slim, strict=True) if not is_slim]
@@ -34,10 +38,14 @@ def structure(space: shapely.Geometry, detail: float, clutter: float) -> shapely
     return shapely.MultiPolygon([p for p in shapely.get_parts(simple) if p.geom_type == "Polygon"])
 
 
-def _span(ring: shapely.LinearRing) -> float:
-    """Longest side of the smallest rectangle around a ring, metres."""
+def _is_clutter(ring: shapely.LinearRing, clutter: float, furniture: float) -> bool:
+    """Whether an obstacle is small enough to be no wall, judged by the smallest rectangle around it."""
     box = shapely.get_coordinates(shapely.minimum_rotated_rectangle(ring))
-    return float(np.hypot(*(box[1:3] - box[:2]).T).max()) if len(box) >= 3 else float(ring.length / 2)
+    if len(box) < 5:
+        return float(ring.length / 2) <= clutter
+    width, length = np.sort(np.hypot(*(box[1:3] - box[:2]).T))
+    solid = shapely.area(shapely.Polygon(ring)) >= SOLID * width * length
+    return bool(length <= clutter or (length <= furniture and length < SLENDER * width and solid))
 
 
 def _from_outermost(ring: shapely.LinearRing) -> np.ndarray:
