@@ -12,7 +12,7 @@ import shapely
 from discretize.rooms.rays import Walls
 from numpy.typing import NDArray
 
-__all__ = ["Corners", "ASKEW", "askew", "corners", "doorways", "extensions", "necks", "ring_segments"]
+__all__ = ["Corners", "ASKEW", "askew", "corners", "distinct", "doorways", "extensions", "necks", "ring_segments"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -20,6 +20,7 @@ Index = NDArray[np.intp]
 REFLEX = np.radians(8.0)  # a corner that turns by less is a bend of a wall, not a corner
 SLACK = 0.25, 0.5  # cosine by which a wall may lean towards a neck, to a wall or corner, that counts as locally shortest
 OPENS = 1.25  # a doorway: the free space is this much wider than the neck on either side of it
+SHORT = 0.05  # metres
 ASKEW = 1.6  # a neck that carries on no wall counts as that much wider when the narrowest come first
 LONG = 0.5  # metres; a shorter wall does not show its direction well
 WALL = (0.15, 0.3, 0.45)  # metres past the end of a neck where a wall should carry on
@@ -282,10 +283,31 @@ def askew(space: shapely.Geometry, segments: Array) -> Array:
 
 def same_cut(s: Array, o: Array) -> bool:
     """Whether two cuts do the same: their ends lie close to each other, measured by their own length."""
-    near = 0.35 * min(np.hypot(*(s[1] - s[0])), np.hypot(*(o[1] - o[0])))
-    straight = max(np.hypot(*(s[0] - o[0])), np.hypot(*(s[1] - o[1])))
-    turned = max(np.hypot(*(s[0] - o[1])), np.hypot(*(s[1] - o[0])))
-    return bool(min(straight, turned) <= min(near, 0.5))
+    return bool(_same(s[None], o[None])[0])
+
+
+def distinct(cuts: Array) -> Array:
+    """Drop cuts that do the same as an earlier one, and those too short to matter; shape (k, 2, 2)."""
+    cuts = cuts[np.hypot(*(cuts[:, 1] - cuts[:, 0]).T) > SHORT]
+    middles = shapely.points(cuts.mean(1))
+    i, j = shapely.STRtree(middles).query(middles, predicate="dwithin", distance=0.5)
+    i, j = i[j < i], j[j < i]
+    same = _same(cuts[i], cuts[j])
+    earlier: dict[int, list[int]] = {}
+    for x, y in zip(i[same].tolist(), j[same].tolist(), strict=True):
+        earlier.setdefault(x, []).append(y)
+    kept = np.ones(len(cuts), dtype=bool)
+    for k in sorted(earlier):
+        kept[k] = not kept[earlier[k]].any()
+    return cuts[kept]
+
+
+def _same(s: Array, o: Array) -> NDArray[np.bool_]:
+    lengths = np.hypot(*(s[:, 1] - s[:, 0]).T), np.hypot(*(o[:, 1] - o[:, 0]).T)
+    near = np.minimum(0.35 * np.minimum(*lengths), 0.5)
+    straight = np.maximum(np.hypot(*(s[:, 0] - o[:, 0]).T), np.hypot(*(s[:, 1] - o[:, 1]).T))
+    turned = np.maximum(np.hypot(*(s[:, 0] - o[:, 1]).T), np.hypot(*(s[:, 1] - o[:, 0]).T))
+    return np.asarray(np.minimum(straight, turned) <= near)
 
 
 def _apart(s: Array, o: Array) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from discretize.rooms.cuts import ASKEW, askew, corners, doorways, extensions, necks, ring_segments, same_cut
+from discretize.rooms.cuts import ASKEW, askew, corners, distinct, doorways, extensions, necks, ring_segments
 from discretize.rooms.faces import GRID, Faces, arrangement
 from discretize.rooms.fitting import fit
 from discretize.rooms.merging import Limits, Region, Regions, spread
@@ -48,12 +48,14 @@ class RoomCut:
 
 
 def room_cells(plan: FloorPlan, *, tolerance: float = 0.1, seed: int = 0, radius: float = 0.2) -> RoomCut:
-    scan = SCANLIKE and any(repair.kind == "removed furniture" for repair in plan.repairs)
-    space = structure(plan.space, detail=radius / 2 * (DET if scan else 1), clutter=4 * radius, furniture=CL if scan else 0.0)
+    scan = any(repair.kind == "removed furniture" for repair in plan.repairs)
+    limits = Limits(1 - 2 * tolerance, 1 - 2 * tolerance, 0.6, 0.3) if scan else Limits(1 - tolerance, 1 - tolerance, 0.7, 0.4)
+    tolerance = 1 - limits.convexity
+    space = structure(plan.space, radius if scan else radius / 2, 4 * radius, 25 * radius if scan else 0.0)
     doors = np.array([shapely.get_coordinates(d)[[0, -1]] for d in plan.doors]).reshape(-1, 2, 2)
     cuts, doorway = candidate_cuts(space, doors, tolerance, 2 * radius)
     faces = arrangement(space, cuts, doorway, doors)
-    regions = Regions(faces, Limits(1.0 - tolerance, 1.0 - tolerance, GATE, THROUGH))
+    regions = Regions(faces, limits)
     chosen, notes = search(regions, faces, tolerance, np.random.default_rng(seed))
     owner = np.empty(len(faces), dtype=np.intp)
     for k, region in enumerate(chosen):
@@ -71,7 +73,7 @@ def search(
     for k in range(runs):
         regions.merge(regions.single, rng, 0.0 if k == 0 else 0.05 * (1 + k % 4))
     sound = sees_itself(faces, 1.0 - tolerance)
-    chosen = partition(list(regions.pool.values()), len(faces), cost, sound, 5.0)
+    chosen = partition(list(regions.pool.values()), len(faces), cost, sound)
     for _ in range(rounds):
         before = len(regions.pool)
         for share in SHARES:
@@ -81,7 +83,7 @@ def search(
             regions.merge(start, rng, 0.1)
         if len(regions.pool) == before:
             break
-        chosen = partition(list(regions.pool.values()), len(faces), cost, sound, 5.0)
+        chosen = partition(list(regions.pool.values()), len(faces), cost, sound)
     notes = () if runs == 12 else (f"{runs} randomised merges instead of 12, because the plan has {len(faces)} faces.",)
     return chosen, notes
 
@@ -170,16 +172,8 @@ def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float, notc
         inner = shapely.buffer(zone, 2 * GRID)
         k = np.sort(tree.query(inner, predicate="covers"))
         found, width = np.concatenate([found, maybe[k]]), np.concatenate([width, rank[k]])
-        cuts += _distinct(list(found[np.argsort(width.round(3), kind="stable")]))
+        cuts += list(distinct(found[np.argsort(width.round(3), kind="stable")]))
     return np.array(cuts).reshape(-1, 2, 2), certain
-
-
-def _distinct(cuts: list[Array]) -> list[Array]:
-    kept: list[Array] = []
-    for s in cuts:
-        if np.hypot(*(s[1] - s[0])) > 0.05 and not any(same_cut(s, o) for o in kept):
-            kept.append(s)
-    return kept
 
 
 def _shortest(ends: NDArray[np.intp], length: Array, n: int) -> NDArray[np.bool_]:

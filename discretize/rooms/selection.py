@@ -7,13 +7,15 @@ from discretize.rooms.merging import Region
 
 __all__ = ["partition"]
 
+NODES = 60  # branch-and-bound nodes for each part of a plan: a limit in seconds would make results depend on the machine
+GAP = 0.002  # a partition whose cost is within this share of the least possible is good enough
+
 
 def partition(
     pool: Sequence[Region],
     n: int,
     cost: Callable[[Region], float],
     sound: Callable[[Region], bool],
-    seconds: float,
 ) -> list[Region]:
     """Choose regions that cover each face exactly once at least cost.
 
@@ -27,8 +29,6 @@ def partition(
         Of a region; their sum is minimised.
     sound : callable
         A slower test that a chosen region must pass; others are chosen until all do.
-    seconds : float
-        Longest time for each part of the plan that no region links to another; the best found by then counts.
     """
     parent = list(range(n))
 
@@ -47,22 +47,22 @@ def partition(
         groups.setdefault(root(next(iter(region.faces))), []).append(region)
     chosen: list[Region] = []
     for group in groups.values():
-        chosen += group if len(group) == 1 else _sound(group, cost, sound, seconds)
+        chosen += group if len(group) == 1 else _sound(group, cost, sound)
     return chosen
 
 
 def _sound(
-    pool: list[Region], cost: Callable[[Region], float], sound: Callable[[Region], bool], seconds: float
+    pool: list[Region], cost: Callable[[Region], float], sound: Callable[[Region], bool]
 ) -> list[Region]:
     while True:
-        chosen = _solve(pool, cost, seconds)
+        chosen = _solve(pool, cost)
         bad = {region.faces for region in chosen if len(region.faces) > 1 and not sound(region)}
         if not bad:
             return chosen
         pool = [region for region in pool if region.faces not in bad]
 
 
-def _solve(pool: list[Region], cost: Callable[[Region], float], seconds: float) -> list[Region]:
+def _solve(pool: list[Region], cost: Callable[[Region], float]) -> list[Region]:
     from scipy.optimize import Bounds, LinearConstraint, milp
     from scipy.sparse import csc_array
 
@@ -76,8 +76,19 @@ def _solve(pool: list[Region], cost: Callable[[Region], float], seconds: float) 
         integrality=np.ones(len(pool)),
         bounds=Bounds(0.0, 1.0),
         constraints=LinearConstraint(matrix, 1.0, 1.0),
-        options={"time_limit": seconds},
+        options={"node_limit": NODES, "mip_rel_gap": GAP},
     )
     if result.x is None:
-        return [region for region in pool if len(region.faces) == 1]
+        return _largest_first(pool)
     return [region for region, x in zip(pool, result.x, strict=True) if x > 0.5]
+
+
+def _largest_first(pool: list[Region]) -> list[Region]:
+    """Return a partition without an optimum, should none have been found within the limit."""
+    taken: set[int] = set()
+    chosen = []
+    for region in sorted(pool, key=lambda r: (-r.area, sorted(r.faces))):
+        if taken.isdisjoint(region.faces):
+            taken |= region.faces
+            chosen.append(region)
+    return chosen
