@@ -25,6 +25,7 @@ THROUGH = 0.4
 SHARES = (0.0, 0.2, 0.2, 0.4, 0.4)
 W = [1.0, 2.0, 0.15]
 EFFORT = 6000
+MANY = 10_000
 SCANLIKE = True
 CL = 4.0
 DET = 1.0
@@ -69,7 +70,7 @@ def search(
 ) -> tuple[list[Region], tuple[str, ...]]:
     """Pool unions from many random merges and choose the best partition; then break parts of it and join again."""
     runs = int(np.clip(EFFORT // max(len(faces), 1), 2, 12))
-    rounds = ROUNDS if runs > 2 else 1
+    rounds = 0 if len(faces) > MANY else ROUNDS if runs > 2 else 1
     for k in range(runs):
         regions.merge(regions.single, rng, 0.0 if k == 0 else 0.05 * (1 + k % 4))
     sound = sees_itself(faces, 1.0 - tolerance)

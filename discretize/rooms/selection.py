@@ -51,15 +51,15 @@ def partition(
     return chosen
 
 
-def _sound(
-    pool: list[Region], cost: Callable[[Region], float], sound: Callable[[Region], bool]
-) -> list[Region]:
-    while True:
-        chosen = _solve(pool, cost)
-        bad = {region.faces for region in chosen if len(region.faces) > 1 and not sound(region)}
-        if not bad:
-            return chosen
-        pool = [region for region in pool if region.faces not in bad]
+def _sound(pool: list[Region], cost: Callable[[Region], float], sound: Callable[[Region], bool]) -> list[Region]:
+    """Solve, and again within every chosen region that is not sound, without it."""
+    chosen: list[Region] = []
+    for region in _solve(pool, cost):
+        if len(region.faces) == 1 or sound(region):
+            chosen.append(region)
+        else:
+            chosen += _sound([part for part in pool if part.faces < region.faces], cost, sound)
+    return chosen
 
 
 def _solve(pool: list[Region], cost: Callable[[Region], float]) -> list[Region]:
