@@ -9,16 +9,20 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from discretize.rooms.rays import Walls
 from numpy.typing import NDArray
 
-__all__ = ["Corners", "ASKEW", "askew", "corners", "distinct", "doorways", "extensions", "necks", "ring_segments"]
+from discretize.rooms.rays import Walls
+
+__all__ = ["ASKEW", "Corners", "askew", "corners", "distinct", "doorways", "extensions", "necks", "ring_segments"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 REFLEX = np.radians(8.0)  # a corner that turns by less is a bend of a wall, not a corner
-SLACK = 0.25, 0.5  # cosine by which a wall may lean towards a neck, to a wall or corner, that counts as locally shortest
+SLACK = (
+    0.25,
+    0.5,
+)  # cosine by which a wall may lean towards a neck, to a wall or corner, that counts as locally shortest
 OPENS = 1.25  # a doorway: the free space is this much wider than the neck on either side of it
 SHORT = 0.05  # metres
 ASKEW = 1.6  # a neck that carries on no wall counts as that much wider when the narrowest come first

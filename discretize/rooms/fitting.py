@@ -2,10 +2,11 @@
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
+
 from discretize.rooms.cuts import ring_segments
 from discretize.rooms.faces import Faces
 from discretize.rooms.rays import Walls
-from numpy.typing import NDArray
 
 __all__ = ["fit"]
 
@@ -14,7 +15,9 @@ def fit(space: shapely.Geometry, faces: Faces, owner: NDArray[np.intp], reach: f
     """Cut the free space along the boundaries between chosen cells."""
     unions = [shapely.coverage_union_all(faces.polygons[owner == k]) for k in range(owner.max() + 1)]
     kept = _boundaries(faces, owner)
-    lines = [line for line in shapely.get_parts(shapely.line_merge(kept)) if line.length > 0] if not kept.is_empty else []
+    lines = (
+        [line for line in shapely.get_parts(shapely.line_merge(kept)) if line.length > 0] if not kept.is_empty else []
+    )
     walls = Walls(ring_segments(space))
     lines = [_reach_out(line, walls, reach) for line in lines]
     linework = shapely.union_all([shapely.boundary(space), *lines])

@@ -11,13 +11,13 @@ from functools import cache
 
 import numpy as np
 import shapely
-from discretize.rooms.faces import Border, Faces
 from numpy.typing import NDArray
+
+from discretize.rooms.faces import Border, Faces
 
 __all__ = ["Limits", "Region", "Regions"]
 
 Array = NDArray[np.float64]
-
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +106,14 @@ class Regions:
             shut[[i, j]] += border.length - border.door
         self.single = [
             Region(
-                frozenset([k]), p.area, shapely.get_coordinates(h)[:-1], h.area, spread(p), 1.0, shut[k], bool(faces.sill[k])
+                frozenset([k]),
+                p.area,
+                shapely.get_coordinates(h)[:-1],
+                h.area,
+                spread(p),
+                1.0,
+                shut[k],
+                bool(faces.sill[k]),
             )
             for k, (p, h) in enumerate(zip(faces.polygons, hulls, strict=True))
         ]

@@ -3,11 +3,14 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
+
 from discretize.rooms.merging import Region
 
 __all__ = ["partition"]
 
-NODES = 60  # branch-and-bound nodes for each part of a plan: a limit in seconds would make results depend on the machine
+NODES = (
+    60  # branch-and-bound nodes for each part of a plan: a limit in seconds would make results depend on the machine
+)
 GAP = 0.002  # a partition whose cost is within this share of the least possible is good enough
 
 
