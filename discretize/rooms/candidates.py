@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from discretize.rooms.cuts import ASKEW, askew, corners, distinct, doorways, extensions, necks, ring_segments
 from discretize.rooms.faces import GRID, arrangement
-from discretize.rooms.rays import Walls
+from discretize.rooms.rays import Walls, lines_of
 
 __all__ = ["candidate_cuts"]
 
@@ -42,7 +42,7 @@ def candidate_cuts(space: shapely.Geometry, doors: Array, tolerance: float, notc
     zones = arrangement(space, np.empty((0, 2, 2)), certain, doors)
     rest = np.delete(np.arange(len(segments)), chosen[clear])
     maybe, rank = _useful(space, segments[rest], ends[rest], len(at))
-    tree = shapely.STRtree(shapely.linestrings(maybe))
+    tree = shapely.STRtree(lines_of(maybe))
     cuts = [np.empty((0, 2, 2))]
     for zone in zones.polygons[~zones.sill]:
         if zone.area >= (1.0 - 0.5 * tolerance) * zone.convex_hull.area and not zone.interiors:

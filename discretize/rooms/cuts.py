@@ -1,8 +1,8 @@
 """Where a person might cut: doorways first, then the walls' own lines carried on into the room.
 
-A cut starts at a reflex vertex, a corner that juts into the free space. A *neck* joins it by the locally shortest way to
-another wall or corner; a neck is a *doorway* when the room is wider than the neck on both sides of it. Corners that no
-doorway ends at, in parts of the plan that are not nearly convex as they are, get the extensions of their two walls.
+A cut starts at a reflex vertex, a corner that juts into the free space. A *neck* joins it by the locally shortest way
+to another wall or corner; a neck is a *doorway* when the room is wider than the neck on both sides of it. Corners that
+no doorway ends at, in parts of the plan that are not nearly convex as they are, get the extensions of their two walls.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from discretize.rooms.rays import Walls
+from discretize.rooms.rays import Walls, lines_of
 
 __all__ = ["ASKEW", "Corners", "askew", "corners", "distinct", "doorways", "extensions", "necks", "ring_segments"]
 
@@ -105,7 +105,7 @@ def necks(space: shapely.Geometry, at: Corners, reach: float, most: int = 4) -> 
         Number of the corner at either end, -1 where the far end is not one.
     """
     walls = ring_segments(space)
-    tree = shapely.STRtree(shapely.linestrings(walls))
+    tree = shapely.STRtree(lines_of(walls))
     v, e = tree.query(shapely.points(at.points), predicate="dwithin", distance=reach)
     p, a, b = at.points[v], walls[e, 0], walls[e, 1]
     along = b - a
@@ -132,12 +132,13 @@ def necks(space: shapely.Geometry, at: Corners, reach: float, most: int = 4) -> 
 
     order = np.lexsort((q[:, 1], q[:, 0], np.round(width, 3)))
     v, q, width, far = v[order], q[order], width[order], far[order]
-    once, seen = [], set()
-    for k in range(len(v)):
-        key = (min(v[k], far[k]), max(v[k], far[k])) if far[k] >= 0 else (v[k], *np.round(100 * q[k]))
+    once: list[int] = []
+    seen: set[tuple[int, ...]] = set()
+    for row, (near, there, x, y) in enumerate(zip(v.tolist(), far.tolist(), *q.T.tolist(), strict=True)):
+        key = (min(near, there), max(near, there)) if there >= 0 else (near, round(100 * x), round(100 * y))
         if key not in seen:
             seen.add(key)
-            once.append(k)
+            once.append(row)
     v, q, far = v[once], q[once], far[once]
     segments = np.stack([at.points[v], q], axis=1)
     visible = _inside(space, segments)
@@ -170,7 +171,7 @@ def doorways(space: shapely.Geometry, at: Corners, segments: Array, ends: Index)
     straight, width = factor < ASKEW, factor * width
     order = np.argsort(width, kind="stable")
     segments, ends, width, straight = segments[order], ends[order], width[order], straight[order]
-    tree = shapely.STRtree(shapely.linestrings(segments))
+    tree = shapely.STRtree(lines_of(segments))
     rivals: list[list[int]] = [[] for _ in segments]
     for x, y in tree.query(shapely.linestrings(segments), predicate="dwithin", distance=0.5).T.tolist():
         if y < x:

@@ -8,6 +8,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from discretize.rooms.rays import lines_of
+
 __all__ = ["GRID", "Border", "Faces", "arrangement"]
 
 Array = NDArray[np.float64]
@@ -89,8 +91,8 @@ def arrangement(space: shapely.Geometry, cuts: Array, doorways: Array, doors: Ar
         source bar their two faces from each other.
     """
     segments = np.concatenate([cuts, doorways, doors])
-    lines = shapely.set_precision(shapely.linestrings(segments), GRID) if len(segments) else np.empty(0, dtype=object)
-    linework = shapely.union_all([shapely.boundary(space), *lines], grid_size=GRID)
+    lines = lines_of(segments)
+    linework = shapely.union_all([shapely.boundary(space), *lines.tolist()], grid_size=GRID)
     polygons = shapely.get_parts(shapely.polygonize(shapely.get_parts(linework)))
     shapely.prepare(space)
     polygons = polygons[shapely.intersects(space, shapely.point_on_surface(polygons))]
@@ -100,7 +102,7 @@ def arrangement(space: shapely.Geometry, cuts: Array, doorways: Array, doors: Ar
 
 
 def _gathered(segments: Array) -> shapely.MultiLineString:
-    lines = shapely.multilinestrings(shapely.linestrings(segments))
+    lines = shapely.MultiLineString(lines_of(segments).tolist())
     shapely.prepare(lines)
     return lines
 

@@ -19,6 +19,11 @@ def fit(space: shapely.Geometry, faces: Faces, owner: NDArray[np.intp], reach: f
         [line for line in shapely.get_parts(shapely.line_merge(kept)) if line.length > 0] if not kept.is_empty else []
     )
     walls = Walls(ring_segments(space))
+    parts = shapely.get_parts(shapely.line_merge(kept))
+    lines = list(parts[shapely.length(parts) > 0])
+    walls = Walls(ring_segments(space))
+    lines = [line for line in shapely.get_parts(shapely.line_merge(kept)) if line.length > 0]
+    walls = Walls(ring_segments(space))
     lines = [_reach_out(line, walls, reach) for line in lines]
     linework = shapely.union_all([shapely.boundary(space), *lines])
     pieces = shapely.get_parts(shapely.polygonize(shapely.get_parts(linework)))
@@ -33,7 +38,7 @@ def fit(space: shapely.Geometry, faces: Faces, owner: NDArray[np.intp], reach: f
     groups = []
     for k in range(len(unions)):
         if (best == k).any():
-            groups += [p for p in shapely.get_parts(shapely.union_all(pieces[best == k]))]
+            groups += shapely.get_parts(shapely.union_all(pieces[best == k])).tolist()
     return groups
 
 

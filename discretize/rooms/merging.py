@@ -12,6 +12,7 @@ from functools import cache
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
 
 from discretize.rooms.faces import Border, Faces
 
@@ -194,8 +195,10 @@ class Regions:
         if todo:
             points = [corner for a, b, _ in todo for corner in (a.hull, b.hull)]
             which = np.repeat(np.arange(len(todo)), [len(a.hull) + len(b.hull) for a, b, _ in todo])
-            hulls = shapely.convex_hull(shapely.multipoints(np.concatenate(points), indices=which))
-            for (a, b, border), hull, hull_area in zip(todo, hulls, shapely.area(hulls).tolist(), strict=True):
+            multipoints = shapely.multipoints(np.concatenate(points), indices=which)
+            hulls = np.asarray(shapely.convex_hull(multipoints), dtype=object)
+            areas = np.asarray(shapely.area(hulls))
+            for (a, b, border), hull, hull_area in zip(todo, hulls, areas.tolist(), strict=True):
                 self._tried[_key(a, b)] = self._union(a, b, border, hull, hull_area)
         return [self._tried[_key(a, b)] for a, b, _ in pairs]
 
@@ -230,15 +233,15 @@ def _key(a: Region, b: Region) -> tuple[frozenset[int], frozenset[int]]:
     return a.faces, b.faces
 
 
-def spread(polygon: shapely.Polygon, n: int = 8) -> Array:
+def spread(polygon: BaseGeometry, n: int = 8) -> Array:
     """Return about ``n`` points of a polygon, spread evenly, shape (p, 2), metres."""
     x0, y0, x1, y1 = polygon.bounds
     for tries in (2 * n, 16 * n):
         points = np.array([x0, y0]) + LATTICE[:tries] * np.array([x1 - x0, y1 - y0])
-        points = points[shapely.contains_xy(polygon, points)]
+        points = points[np.asarray(shapely.contains_xy(polygon, points), dtype=bool)]
         if len(points) >= n // 2:
-            return points[:n]
-    return np.concatenate([points, shapely.get_coordinates(polygon.representative_point())])
+            return np.asarray(points[:n])
+    return np.asarray(np.concatenate([points, shapely.get_coordinates(shapely.point_on_surface(polygon))]))
 
 
 def crossing(p: Array, q: Array, pieces: Array) -> float:

@@ -4,9 +4,14 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-__all__ = ["Walls"]
+__all__ = ["Walls", "lines_of"]
 
 Array = NDArray[np.float64]
+
+
+def lines_of(segments: Array) -> NDArray[np.object_]:
+    """Make a line of each segment, shape (k,)."""
+    return np.asarray(shapely.linestrings(segments), dtype=object)
 
 
 class Walls:
@@ -20,7 +25,7 @@ class Walls:
 
     def __init__(self, segments: Array) -> None:
         self.segments = segments
-        self._tree = shapely.STRtree(shapely.linestrings(segments))
+        self._tree = shapely.STRtree(lines_of(segments))
 
     def hits(self, origins: Array, directions: Array, reach: Array, skip: float = 2e-3) -> Array:
         """Return how far each ray goes before it meets a wall, at most its reach; shape (k,), metres.

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from discretize.rooms.faces import Faces
 from discretize.rooms.merging import Limits, Region, Regions, spread
@@ -81,7 +82,7 @@ def _sees_itself(faces: Faces, least: float) -> Callable[[Region], bool]:
     return sound
 
 
-def mutual_sight(polygon: shapely.Geometry, n: int = 48) -> float:
+def mutual_sight(polygon: BaseGeometry, n: int = 48) -> float:
     """Return the share of pairs of points of a polygon, ``n`` spread evenly, that see each other inside it."""
     points = spread(polygon, n)
     i, j = np.triu_indices(len(points), 1)

@@ -76,7 +76,7 @@ def _solve(pool: list[Region], cost: Callable[[Region], float]) -> list[Region]:
     matrix = csc_array((np.ones(len(rows)), rows, starts), shape=(len(number), len(pool)))
     result = milp(
         [cost(region) for region in pool],
-        integrality=np.ones(len(pool)),
+        integrality=np.ones(len(pool), dtype=np.int64),
         bounds=Bounds(0.0, 1.0),
         constraints=LinearConstraint(matrix, 1.0, 1.0),
         options={"node_limit": NODES, "mip_rel_gap": GAP},

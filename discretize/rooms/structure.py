@@ -31,7 +31,7 @@ def structure(space: shapely.Geometry, detail: float, clutter: float, furniture:
         thin += [shapely.Polygon(ring) for ring, is_slim in zip(holes, slim, strict=True) if is_slim]
         thick = [_from_outermost(ring) for ring, is_slim in zip(holes, slim, strict=True) if not is_slim]
         parts.append(shapely.Polygon(_from_outermost(part.exterior), thick))
-    simple = shapely.set_precision(shapely.simplify(shapely.MultiPolygon(parts), detail), GRID)
+    simple: shapely.Geometry = shapely.set_precision(shapely.simplify(shapely.MultiPolygon(parts), detail), GRID)
     # Straightening would flatten a free-standing wall thinner than this to nothing and so open what it divides.
     walls = shapely.union_all(shapely.simplify(np.array(thin, dtype=object), detail / 4))
     simple = shapely.difference(simple, walls, grid_size=GRID)
