@@ -15,16 +15,9 @@ def fit(space: shapely.Geometry, faces: Faces, owner: NDArray[np.intp], reach: f
     """Cut the free space along the boundaries between chosen cells."""
     unions = [shapely.coverage_union_all(faces.polygons[owner == k]) for k in range(owner.max() + 1)]
     kept = _boundaries(faces, owner)
-    lines = (
-        [line for line in shapely.get_parts(shapely.line_merge(kept)) if line.length > 0] if not kept.is_empty else []
-    )
-    walls = Walls(ring_segments(space))
     parts = shapely.get_parts(shapely.line_merge(kept))
-    lines = list(parts[shapely.length(parts) > 0])
     walls = Walls(ring_segments(space))
-    lines = [line for line in shapely.get_parts(shapely.line_merge(kept)) if line.length > 0]
-    walls = Walls(ring_segments(space))
-    lines = [_reach_out(line, walls, reach) for line in lines]
+    lines = [_reach_out(line, walls, reach) for line in parts[shapely.length(parts) > 0]]
     linework = shapely.union_all([shapely.boundary(space), *lines])
     pieces = shapely.get_parts(shapely.polygonize(shapely.get_parts(linework)))
     shapely.prepare(space)

@@ -49,7 +49,7 @@ def _is_clutter(ring: shapely.LinearRing, clutter: float, furniture: float) -> b
 
 
 def _from_outermost(ring: shapely.LinearRing) -> np.ndarray:
-    """Start a ring at its point farthest from its centroid: simplification keeps the start, wherever the file put it."""
+    """Start a ring at its point farthest from its centroid: simplification keeps the start, wherever that was."""
     p = shapely.get_coordinates(ring)[:-1]
     c = shapely.get_coordinates(shapely.centroid(shapely.Polygon(ring)))[0]
     return np.roll(p, -int(np.argmax(np.round(np.hypot(*(p - c).T), 6))), axis=0)
