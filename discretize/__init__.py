@@ -2,7 +2,7 @@
 
 from discretize.bounds import Certificate, certify
 from discretize.cellmap import CellMap, Portal, graph_components
-from discretize.cells_geojson import read_cells, write_cells
+from discretize.cells_geojson import cells_text, read_cells, write_cells
 from discretize.checks import CellReport, check_cells
 from discretize.cutting import convex_cells
 from discretize.errors import DiscretizeError
@@ -18,6 +18,7 @@ __all__ = [
     "DiscretizeError",
     "Method",
     "Portal",
+    "cells_text",
     "certify",
     "check_cells",
     "convex_cells",

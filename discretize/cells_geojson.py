@@ -16,8 +16,9 @@ from discretize.errors import DiscretizeError
 from discretize.numbering import number_cells
 from discretize.routes import ways_of
 from maps import FloorPlan, Label
+from maps.texts import load_json
 
-__all__ = ["read_cells", "write_cells"]
+__all__ = ["cells_text", "read_cells", "write_cells"]
 
 
 def write_cells(cellmap: CellMap, path: Path) -> None:
@@ -39,6 +40,14 @@ def write_cells(cellmap: CellMap, path: Path) -> None:
     DiscretizeError
         If the file cannot be written.
     """
+    try:
+        path.write_text(cells_text(cellmap), encoding="utf-8")
+    except OSError as exc:
+        raise DiscretizeError(f"Cannot write cells to {path}: {exc.strerror}.") from exc
+
+
+def cells_text(cellmap: CellMap) -> str:
+    """Return what :func:`write_cells` writes."""
     neighbours: list[list[int]] = [[] for _ in cellmap.cells]
     for a, b in cellmap.edges:
         neighbours[a].append(b + 1)
@@ -73,10 +82,7 @@ def write_cells(cellmap: CellMap, path: Path) -> None:
         "units": "m",
         "features": features,
     }
-    try:
-        path.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    except OSError as exc:
-        raise DiscretizeError(f"Cannot write cells to {path}: {exc.strerror}.") from exc
+    return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
 
 
 def read_cells(path: Path, plan: FloorPlan, *, radius: float = 0.2) -> CellMap:
@@ -125,12 +131,7 @@ def _feature(geometry: BaseGeometry, **properties: object) -> dict[str, Any]:
 
 def _features(path: Path) -> Sequence[tuple[str, dict[str, Any]]]:
     """Every feature of a file with the words that name it in a message."""
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as exc:
-        raise DiscretizeError(f"Cannot read cells from {path}: {exc.strerror}.") from exc
-    except ValueError as exc:
-        raise DiscretizeError(f"{path} is not JSON: {exc}.") from exc
+    document = load_json(path, str(path), DiscretizeError)
     found = document.get("features") if isinstance(document, dict) else None
     if not isinstance(found, list) or document.get("type") != "FeatureCollection":
         raise DiscretizeError(f"{path} is not a GeoJSON FeatureCollection.")

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from discretize.cellmap import CellMap
 from discretize.cutting import blocked_doors
 from discretize.methods import METHODS
+from discretize.numbering import ignored_numbers
 from discretize.portals import find_openings
 from discretize.routes import Ways, ways_of
 from discretize.sharing import segment_tree
@@ -55,6 +56,8 @@ class CellReport:
         Doors of the plan through which the body does not fit, from 1.
     problems : tuple of str
         One sentence for everything that must hold and does not; empty for a sound map.
+    notes : tuple of str
+        One sentence for what the plan says and the map does not follow: room numbers that are not those of cells.
     """
 
     cells: int
@@ -69,6 +72,7 @@ class CellReport:
     pockets: tuple[int, ...]
     blocked_doors: tuple[int, ...]
     problems: tuple[str, ...]
+    notes: tuple[str, ...]
 
 
 def check_cells(cellmap: CellMap) -> CellReport:
@@ -101,6 +105,7 @@ def check_cells(cellmap: CellMap) -> CellReport:
         pockets=tuple((np.flatnonzero(components < 0) + 1).tolist()),
         blocked_doors=tuple(k + 1 for k in blocked_doors(cellmap.plan, cellmap.portals)),
         problems=(),
+        notes=ignored_numbers(cellmap.cells, cellmap.plan.labels),
     )
     problems = (*_shape_problems(cellmap, convexity), *_graph_problems(cellmap, report, ways))
     return CellReport(**{name: getattr(report, name) for name in report.__slots__} | {"problems": problems})

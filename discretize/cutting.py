@@ -1,7 +1,6 @@
 """Floor plan to cell map: the one entry, whatever the method."""
 
 from collections.abc import Sequence
-from math import isfinite
 
 import numpy as np
 import shapely
@@ -17,6 +16,9 @@ from discretize.splitting import split_bottlenecks
 from maps import FloorPlan, nearest
 
 __all__ = ["blocked_doors", "connect_cells", "convex_cells"]
+
+LARGEST_RADIUS = 100.0
+"""No body is larger than this, metres."""
 
 _BESIDE = 0.01
 """A portal whose segment comes this near to the middle of a door is that door's, metres."""
@@ -37,12 +39,16 @@ def convex_cells(plan: FloorPlan, *, method: str = "exact", radius: float = 0.2)
     Raises
     ------
     DiscretizeError
-        If there is no such method, the radius is no positive length, or the body fits nowhere or through no door.
+        If there is no such method, the radius is no positive length of at most 100 m, or the body fits nowhere or
+        through no door.
     """
     if method not in METHODS:
         raise DiscretizeError(f"There is no method {method!r} to cut a plan into cells; {nearest(method, METHODS)}")
-    if not (isfinite(radius) and radius > 0):
-        raise DiscretizeError(f"The radius of a body must be a positive length in metres, not {radius!r}.")
+    if not 0 < radius <= LARGEST_RADIUS:
+        raise DiscretizeError(
+            f"The radius of a body must be a positive length in metres, not {radius!r}; at most {LARGEST_RADIUS:g} are "
+            "possible."
+        )
     ways = ways_of(plan.space, radius)
     way = METHODS[method]
     cells, names = number_cells(split_bottlenecks(way.cut(plan), ways.tight, way.convexity), plan.labels)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from maps import Label
 
-__all__ = ["number_cells"]
+__all__ = ["ignored_numbers", "number_cells"]
 
 _BESIDE = 0.01
 """A label this near to a cell lies in it, metres."""
@@ -49,6 +49,35 @@ def number_cells(
         if label.name:
             names.setdefault(cell, label.name)
     return [cells[k] for k in order], tuple(names.get(k, "") for k in order)
+
+
+def ignored_numbers(cells: Sequence[shapely.Polygon], labels: Sequence[Label]) -> tuple[str, ...]:
+    """Say in one sentence why cells have other numbers than the labels in them; nothing if they have the same.
+
+    Parameters
+    ----------
+    cells : sequence of shapely.Polygon
+        N cells in their order, metres.
+    labels : sequence of Label
+        What the source has.
+    """
+    found: dict[int, int] = {}
+    twice: list[tuple[int, int]] = []
+    same = True
+    for label, cell in zip(labels, _hits(cells, labels), strict=True):
+        if label.number is not None:
+            same &= label.number == cell + 1
+            twice += [(found[cell], label.number)] if cell in found else []
+            if cell < len(cells):
+                found.setdefault(cell, label.number)
+    if same:
+        return ()
+    numbers = sorted(label.number for label in labels if label.number is not None)
+    if twice:
+        why = f"{twice[0][0]} and {twice[0][1]} lie in one cell"
+    else:
+        why = f"there are {len(cells)} cells, and the plan numbers {len(numbers)} from {numbers[0]} to {numbers[-1]}"
+    return (f"Room numbers that the plan gives are not those of the cells: {why}.",)
 
 
 def _hits(cells: Sequence[shapely.Polygon], labels: Sequence[Label]) -> list[int]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,8 @@ import numpy as np
 
 from geomsim.scenario import Scenario, read_scenario
 from geomsim.team import place_team
-from maps import GeomsimError
+from maps import GeomsimError, PlanError
+from maps.texts import load_json
 from planners import (
     Prediction,
     SameCell,
@@ -101,8 +101,8 @@ def is_edge_list(plan: str) -> bool:
     if path.suffix != ".json" or not path.is_file():
         return False
     try:
-        told = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        told = load_json(path, plan)
+    except PlanError:
         return False
     return isinstance(told, dict) and "edges" in told
 

@@ -16,6 +16,7 @@ from geomsim.pursuit import CAPTURE_RULES, Timing
 from geomsim.sensing import Sensor
 from geomsim.team import Evader, Team
 from maps import FloorPlan, GeomsimError, bundled_names, nearest, read_plan
+from maps.texts import read_text
 from planners import (
     PLANNERS,
     AreaSpeedDegree,
@@ -200,9 +201,7 @@ def read_scenario(path: Path | None, flags: dict[str, Any]) -> Scenario:
 
 def _load(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as exc:
-        raise ScenarioError(f"Cannot read the scenario {path}: {exc.strerror}.") from exc
+        return tomllib.loads(read_text(path, str(path), ScenarioError))
     except (ValueError, RecursionError) as exc:  # wrong syntax, no text, a number of thousands of digits, or too deep
         raise ScenarioError(f"{path} is not valid TOML: {exc}.") from exc
 

@@ -150,8 +150,7 @@ def _draw_sheet(
             figures.spotting(part, moment.pursuers[by], moment.evader)
             told += f" · captured by P{by + 1}"
         figures.evader(part, moment.evader, captured=moment.captured)
-        for r in team:
-            figures.robot(part, r, moment.pursuers[r], float(moment.headings[r]), prefix="P")
+        figures.robots(part, moment.pursuers, moment.headings, prefix="P", last=-1 if by is None else by)
         at = (left + panel.width / 2, top + panel.height + 12 * unit)
         sheet.text(told, at, 13 * unit, colours.text, "centre")
 

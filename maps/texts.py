@@ -10,7 +10,7 @@ from typing import Any
 
 import yaml
 
-from maps.errors import PlanError, shortened, shown
+from maps.errors import GeomsimError, PlanError, shortened, shown
 
 __all__ = ["LARGEST_FILE", "check_file", "load_json", "load_yaml", "read_bytes", "read_text", "reason"]
 
@@ -28,37 +28,37 @@ class _BadNumberError(Exception):
     """Carries the NaN or Infinity that Python's reader would take, though JSON has none, or a number too long."""
 
 
-def check_file(path: Path, where: str) -> None:
-    """Raise PlanError unless a path is a file that ends: a pipe or a device could keep its reader for ever."""
+def check_file(path: Path, where: str, error: type[GeomsimError] = PlanError) -> None:
+    """Raise ``error`` unless a path is a file that ends: a pipe or a device could keep its reader for ever."""
     try:
         about = path.stat()
     except (OSError, ValueError) as exc:
-        raise PlanError(f"{where}: {_the_file(path, where)} cannot be read ({reason(exc)}).") from exc
+        raise error(f"{where}: {_the_file(path, where)} cannot be read ({reason(exc)}).") from exc
     if stat.S_ISDIR(about.st_mode):
-        raise PlanError(f"{where}: {_the_file(path, where)} is a folder.")
+        raise error(f"{where}: {_the_file(path, where)} is a folder.")
     if not stat.S_ISREG(about.st_mode):
-        raise PlanError(f"{where}: {_the_file(path, where)} is a pipe or a device and may never end.")
+        raise error(f"{where}: {_the_file(path, where)} is a pipe or a device and may never end.")
     if about.st_size > LARGEST_FILE:
-        raise PlanError(
+        raise error(
             f"{where}: {_the_file(path, where)} has {about.st_size} bytes; at most {LARGEST_FILE} are possible."
         )
 
 
-def read_bytes(path: Path, where: str) -> bytes:
-    """Read a file; PlanError if it cannot be read, is no file that ends or is larger than ``LARGEST_FILE``."""
-    check_file(path, where)
+def read_bytes(path: Path, where: str, error: type[GeomsimError] = PlanError) -> bytes:
+    """Read a file; ``error`` if it cannot be read, is no file that ends or is larger than ``LARGEST_FILE``."""
+    check_file(path, where, error)
     try:
         return path.read_bytes()
     except OSError as exc:
-        raise PlanError(f"{where}: {_the_file(path, where)} cannot be read ({reason(exc)}).") from exc
+        raise error(f"{where}: {_the_file(path, where)} cannot be read ({reason(exc)}).") from exc
 
 
-def read_text(path: Path, where: str) -> str:
-    """Read a UTF-8 text file, with a byte order mark or without; PlanError if it cannot be read or is not text."""
+def read_text(path: Path, where: str, error: type[GeomsimError] = PlanError) -> str:
+    """Read a UTF-8 text file, with a byte order mark or without; ``error`` if it cannot be read or is not text."""
     try:
-        return read_bytes(path, where).decode("utf-8-sig").replace("\r\n", "\n")
+        return read_bytes(path, where, error).decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as exc:
-        raise PlanError(f"{where}: the file is not text, so it is not what {path.suffix} says.") from exc
+        raise error(f"{where}: the file is not text, so it is not what {path.suffix} says.") from exc
 
 
 def reason(exc: OSError | ValueError) -> str:
@@ -70,16 +70,16 @@ def reason(exc: OSError | ValueError) -> str:
     return exc.strerror or str(exc)
 
 
-def load_json(path: Path, where: str) -> Any:
-    """Load a JSON file; PlanError if it is none, or holds numbers that are not finite or endlessly long."""
-    text = read_text(path, where)
+def load_json(path: Path, where: str, error: type[GeomsimError] = PlanError) -> Any:
+    """Load a JSON file; ``error`` if it is none, or holds numbers that are not finite or endlessly long."""
+    text = read_text(path, where, error)
     try:
         return json.loads(text, parse_constant=_no_number, parse_int=_whole)
     except _BadNumberError as exc:
-        raise PlanError(f"{where}: there is {exc} in it; coordinates must be finite numbers.") from exc
+        raise error(f"{where}: there is {exc} in it; coordinates must be finite numbers.") from exc
     except (json.JSONDecodeError, RecursionError) as exc:
         place = f" at line {exc.lineno}, column {exc.colno}: {exc.msg}" if isinstance(exc, json.JSONDecodeError) else ""
-        raise PlanError(f"{where}: the file is not valid JSON{place}.") from exc
+        raise error(f"{where}: the file is not valid JSON{place}.") from exc
 
 
 def load_yaml(path: Path, where: str) -> dict[str, Any]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
+from maps.texts import load_json
 from planners.capture import SameCell
 from planners.graph import GraphError, SearchGraph
 from planners.motion import UniformMotion
@@ -23,12 +23,7 @@ def read_edge_list(path: str | Path) -> SearchGraph:
     GraphError
         If the file cannot be read, is no such JSON, or describes no graph; the message names the file.
     """
-    try:
-        document = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as exc:
-        raise GraphError(f"{path}: cannot be read ({exc.strerror}).") from exc
-    except ValueError as exc:
-        raise GraphError(f"{path}: is not JSON ({exc}).") from exc
+    document = load_json(Path(path), str(path), GraphError)
     if not isinstance(document, dict):
         raise GraphError(f"{path}: must hold an object with 'vertices' and 'edges'.")
     vertices, edges = document.get("vertices"), document.get("edges")

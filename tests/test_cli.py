@@ -1,5 +1,6 @@
 """The command line as a person meets it: what it prints, what it writes, how it refuses."""
 
+import errno
 import json
 import os
 import shlex
@@ -187,6 +188,11 @@ def test_listings(call, command: str) -> None:
         (["run", "house", "--out", "new/" + "x" * 300], "output folder"),
         (["discretize", "house", "--out", "new/" + "x" * 300], "output folder"),
         (["run", "house", "--pursuers", "9" * 5000], "--pursuers"),
+        (["run", "house", "--depth", "50"], "the largest depth that would do is"),
+        (["run", "house", "--planner", "coupled", "--depth", "50"], "joint paths"),
+        (["run", "house", "--radius", "1e308"], "at most 100"),
+        (["discretize", "house", "--radius", "1e308"], "at most 100"),
+        (["discretize", "x" * 5000], "file name too long"),
         (["run", "house", "--pursuers", "1.5"], "--pursuers"),
         (["run", "house", "--seed", "0.5"], "--seed"),
         (["discretize", "offise"], "office"),
@@ -229,6 +235,50 @@ def test_a_plans_name_leads_nowhere_else(call, tmp_path: Path, name: str) -> Non
     assert folder.parent == Path("geomsim-output")
     assert not folder.name.startswith(".")
     assert {p.name for p in tmp_path.iterdir()} == {"mine", "geomsim-output"}
+
+
+def test_room_numbers_that_do_not_count_are_told(call) -> None:
+    label = {
+        "type": "Feature",
+        "properties": {"kind": "label", "number": 7},
+        "geometry": {"type": "Point", "coordinates": [1, 1]},
+    }
+    rooms = {"type": "Feature", "properties": {}, "geometry": TWO_ROOMS}
+    Path("mine.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [rooms, label]}))
+    sentence = "Room numbers that the plan gives are not those of the cells"
+    _, out, _ = call("discretize", "mine.geojson", "--no-picture", "--json")
+    assert [note.partition(":")[0] for note in json.loads(out)["notes"]] == [sentence]
+    _, out, _ = call("discretize", "mine.geojson", "--no-picture")
+    assert sentence in out
+
+
+def test_a_full_disk_is_told_with_the_name_of_the_file(call, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_text", full)
+    code, out, err = call("discretize", "house", "--out", "new/cells")
+    assert (code, out) == (2, "")
+    assert err == "geomsim: Cannot write new/cells/cells.geojson: No space left on device.\n"
+    assert list(Path().iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["run", "--scenario", "pipe"], ["predict", "pipe.json"], ["discretize", "pipe.json"], ["render", "pipe"]],
+)
+def test_what_may_never_end_is_not_opened(call, arguments: list[str]) -> None:
+    os.mkfifo(arguments[-1])
+    code, out, err = call(*arguments)
+    assert (code, out) == (2, "")
+    assert arguments[-1] in err
+    assert err.count("\n") == 1
+
+
+def test_a_scenario_may_begin_with_a_byte_order_mark(call) -> None:
+    Path("s.toml").write_bytes(b"\xef\xbb\xbfplan = 'house'\r\ntime_limit = 1\r\n")
+    code, _, err = call("run", "--scenario", "s.toml", "--no-video", "--json")
+    assert (code, err) == (0, "")
 
 
 @pytest.mark.parametrize("text", ["a = " + "[" * 20_000, "seed = " + "1" * 5000, "seed = 1\nseed = 2", "plan = 'hou"])

@@ -39,8 +39,8 @@ def discretize(
     """
     from json import dumps
 
-    from discretize import certify, check_cells, convex_cells, read_cells, write_cells
-    from geomsim.files import default_folder, replacing, results_folder, write_text
+    from discretize import cells_text, certify, check_cells, convex_cells, read_cells
+    from geomsim.files import default_folder, results_folder, write_text
 
     begun = time.perf_counter()
     place = flags.read(plan)
@@ -49,8 +49,7 @@ def discretize(
     result = _result(made, check_cells(made), certify(made), seconds)
     with results_folder(out or default_folder(place.name, "cells")) as folder:
         files = {"cells": folder / "cells.geojson", "report": folder / "report.json"}
-        with replacing(files["cells"]) as part:
-            write_cells(made, part)
+        write_text(files["cells"], cells_text(made))
         if picture:
             from geomsim.drawing import write_cells_picture
 
@@ -86,6 +85,7 @@ def _result(cells: CellMap, report: CellReport, certificate: Certificate, second
             "mutual_sight": certificate.mutual_sight,
         },
         "problems": list(report.problems),
+        "notes": list(report.notes),
         "repairs": [repair.message for repair in cells.plan.repairs],
         "seconds": seconds,
     }
@@ -104,7 +104,7 @@ def _tell(told: dict[str, Any], radius: float) -> None:
         say(f"cells that a robot of radius {radius:g} m cannot enter: {len(told['pockets'])}")
     if told["blocked_doors"]:
         say(f"doors that it cannot pass: {', '.join(map(str, told['blocked_doors']))}")
-    for sentence in (*told["problems"], *told["repairs"]):
+    for sentence in (*told["problems"], *told["notes"], *told["repairs"]):
         say(f"  {sentence}")
     for kind, path in told["files"].items():
         say(f"{kind + ':':<10} {path}")

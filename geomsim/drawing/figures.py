@@ -63,9 +63,14 @@ class Figures:
         surface.disc(pixels[-1], 4.5 * self._unit, colour)
         surface.disc(pixels[-1], 2.6 * self._unit, self._theme.casing)
 
-    def robot(self, surface: Surface, number: int, position: Array, heading: float, prefix: str = "") -> None:
+    def robots(self, surface: Surface, positions: Array, headings: Array, prefix: str = "", last: int = -1) -> None:
+        """Draw robots, ``last`` on top; those in one place are drawn beside each other, so that all can be read."""
+        centres = apart(self._view.pixels(positions), 19.0 * self._unit)
+        for number in sorted(range(len(positions)), key=lambda k: k == last):
+            self._robot(surface, number, centres[number], float(headings[number]), prefix)
+
+    def _robot(self, surface: Surface, number: int, centre: Array, heading: float, prefix: str) -> None:
         """Draw a robot with its number, from 1, and a beak where it is heading."""
-        centre = self._view.pixels(position)
         radius = 9.5 * self._unit
         for grown, colour in ((1.8 * self._unit, self._theme.casing), (0.0, self._theme.robot(number))):
             surface.polygon([_beak(centre, radius + grown, heading, grown)], colour)
@@ -92,6 +97,32 @@ class Figures:
         size *= self._unit * min(1.0, 2.1 / (len(text) + 0.6))
         at = (float(centre[0]) + 0.5, float(centre[1]))
         surface.text(text, at, size, self._theme.label, "centre", bold=True)
+
+
+def apart(places: Array, distance: float) -> Array:
+    """Move places away from each other until no two are nearer than a distance, or nearly so.
+
+    Parameters
+    ----------
+    places : ndarray, shape (k, 2)
+        Pixels.
+    distance : float
+        Pixels. How far a place is moved changes continuously with where the others are.
+    """
+    moved = np.array(places, dtype=np.float64)
+    count = len(moved)
+    # places that coincide part in directions of their own
+    turn = 2 * np.pi * np.arange(count) / max(count, 1)
+    moved += 1e-3 * distance * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    for _ in range(60):
+        gap = moved[:, None] - moved[None]
+        away = np.hypot(gap[..., 0], gap[..., 1])
+        push = np.maximum(distance - away, 0.0) / 2
+        np.fill_diagonal(push, 0.0)
+        if not push.any():
+            break
+        moved += (gap * (push / np.maximum(away, 1e-9))[..., None]).sum(axis=1) * 0.5
+    return moved
 
 
 def _ring(surface: Surface, centre: Array, radius: float, colour: str, width: float) -> None:

@@ -143,8 +143,7 @@ class FrameDrawer:
             figures.spotting(surface, moment.pursuers[by], moment.evader)
         if style.evader == "shown" or moment.captured:
             figures.evader(surface, moment.evader, captured=moment.captured)
-        for r in team:
-            figures.robot(surface, r, moment.pursuers[r], float(moment.headings[r]))
+        figures.robots(surface, moment.pursuers, moment.headings, last=-1 if by is None else by)
         self._strip.draw(surface, moment)
         self._draw_time(surface, moment)
         return image

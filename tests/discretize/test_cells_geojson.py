@@ -157,7 +157,9 @@ def test_broken_files_are_refused_in_a_sentence(plan, file, kind, words):
     assert "\n" not in message
 
 
-@pytest.mark.parametrize(("text", "words"), [("{", "is not JSON"), ("[]", "FeatureCollection"), (None, "Cannot read")])
+@pytest.mark.parametrize(
+    ("text", "words"), [("{", "not valid JSON"), ("[]", "FeatureCollection"), (None, "cannot be read")]
+)
 def test_files_of_another_kind(plan, tmp_path, text, words):
     path = tmp_path / "cells.geojson"
     if text is not None:

@@ -141,6 +141,7 @@ def check_any(plan, radius):
         (FloorPlan("cross", shapely.box(0, 1, 3, 2).union(shapely.box(1, 0, 2, 3))), 0.6, "no passage of plan 'cross'"),
         (FloorPlan("closet", shapely.box(0, 0, 1, 1)), 0.5, "does not fit anywhere"),
         (two_halls(), -0.2, "positive length in metres, not -0.2"),
+        (two_halls(), 1e308, "positive length in metres, not 1e+308; at most 100 are possible"),
         (two_halls(), float("nan"), "not nan"),
     ],
 )

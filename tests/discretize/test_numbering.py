@@ -1,9 +1,10 @@
 """Numbers and names of cells."""
 
+import pytest
 import shapely
 
-from discretize import convex_cells
-from discretize.numbering import number_cells
+from discretize import check_cells, convex_cells
+from discretize.numbering import ignored_numbers, number_cells
 from maps import FloorPlan, Label
 
 BOXES = {(i, j): shapely.box(2 * i, 2 * j, 2 * i + 2, 2 * j + 2) for i in range(3) for j in range(2)}
@@ -59,3 +60,32 @@ def test_cell_map_carries_numbers_and_names():
     cellmap = convex_cells(FloorPlan("flat", space, doors=(door,), labels=labels))
     assert cellmap.names == ("hall", "kitchen")
     assert cellmap.cells[0].bounds == (4, 0, 8, 3)
+    assert check_cells(cellmap).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("labels", "why"),
+    [
+        ([Label((1, 1), number=1), Label((6, 1), number=3)], "there are 2 cells, and the plan numbers 2 from 1 to 3"),
+        ([Label((6, 1), number=1)], "there are 2 cells, and the plan numbers 1 from 1 to 1"),
+        ([Label((1, 1), number=2), Label((2, 1), number=1)], "2 and 1 lie in one cell"),
+    ],
+)
+def test_numbers_that_do_not_count_are_told(labels, why):
+    space, door = shapely.box(0, 0, 8, 3), shapely.LineString([(4, 0), (4, 3)])
+    cellmap = convex_cells(FloorPlan("flat", space, doors=(door,), labels=tuple(labels)))
+    assert [cell.bounds[0] for cell in cellmap.cells] == [0, 4]
+    assert check_cells(cellmap).notes == (f"Room numbers that the plan gives are not those of the cells: {why}.",)
+
+
+def test_numbers_that_are_those_of_the_cells_anyway_need_no_word():
+    space, door = shapely.box(0, 0, 8, 3), shapely.LineString([(4, 0), (4, 3)])
+    labels = (Label((1, 1), number=1), Label((6, 1), "hall"))
+    assert check_cells(convex_cells(FloorPlan("flat", space, doors=(door,), labels=labels))).notes == ()
+
+
+def test_numbers_that_lie_in_no_cell_do_not_lie_in_one():
+    cells = [shapely.box(0, 0, 4, 3), shapely.box(4, 0, 8, 3)]
+    labels = [Label((20, 1), number=1), Label((30, 1), number=2)]
+    (note,) = ignored_numbers(cells, labels)
+    assert note.endswith("there are 2 cells, and the plan numbers 2 from 1 to 2.")

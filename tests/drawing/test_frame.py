@@ -175,3 +175,15 @@ def test_every_cell_has_its_pixels(cells: CellMap) -> None:
     floor = Floor(cells, Box(0, 0, 400, 400), THEMES["light"], 1.0)
     counts = np.bincount(floor.labels.ravel(), minlength=6)[1:]
     assert np.allclose(counts / counts.sum(), cells.areas / cells.areas.sum(), atol=0.02)
+
+
+def test_robots_in_one_place_are_drawn_beside_each_other() -> None:
+    from geomsim.drawing.figures import apart
+
+    for count in (1, 2, 3, 8):
+        moved = apart(np.zeros((count, 2)), 10.0)
+        gaps = np.hypot(*(moved[:, None] - moved[None]).transpose(2, 0, 1)) + 99 * np.eye(count)
+        assert gaps.min() > 9.0 or count == 1
+        assert np.abs(moved).max() < 6.0 * count
+    lonely = np.array([[0.0, 0.0], [30.0, 0.0]])
+    assert apart(lonely, 10.0) == pytest.approx(lonely, abs=0.02)

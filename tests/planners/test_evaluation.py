@@ -188,7 +188,7 @@ def test_an_edge_list_is_read(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("{", "is not JSON"),
+        ("{", "not valid JSON"),
         ("[]", "must hold an object"),
         ('{"edges": []}', "'vertices' must be a whole number above 0; got None"),
         ('{"vertices": true, "edges": []}', "got True"),
@@ -208,5 +208,11 @@ def test_a_bad_edge_list_is_named(tmp_path, text, message):
 
 
 def test_a_missing_edge_list_is_named(tmp_path):
-    with pytest.raises(GraphError, match=r"none\.json: cannot be read"):
+    with pytest.raises(GraphError, match=r"none\.json: the file cannot be read"):
         read_edge_list(tmp_path / "none.json")
+
+
+def test_an_edge_list_may_begin_with_a_byte_order_mark(tmp_path):
+    path = tmp_path / "g.json"
+    path.write_bytes(b"\xef\xbb\xbf" + b'{"vertices": 2, "edges": [[0, 1]]}')
+    assert len(read_edge_list(path)) == 2
