@@ -66,7 +66,7 @@ def draft_office() -> FloorPlan:
         for k, room in enumerate(rooms)
     ]
     rooms = hallways + north + west + south + east + core
-    return draft_plan("office", rooms, doors, start=(43, 44), source="bundled")
+    return draft_plan("office", rooms, doors, wall=0.06, start=(43, 44), source="bundled")
 
 
 def _row(numbers: Sequence[int], xs: Sequence[float], y0: float, y1: float) -> list[Room]:

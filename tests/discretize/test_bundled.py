@@ -53,7 +53,7 @@ def test_office_is_believable():
     hallways = [cell for cell, name in zip(cells.cells, cells.names, strict=True) if name == "hallway"]
     narrow = [min(x1 - x0, y1 - y0) for x0, y0, x1, y1 in (c.bounds for c in hallways)]
     assert len(hallways) == 16
-    assert np.array(narrow) == pytest.approx(2.0, abs=0.05)
+    assert np.array(narrow) == pytest.approx(2.0, abs=0.1)
 
 
 def test_museum_has_many_cycles():
