@@ -5,7 +5,7 @@ or they can only be longitude and latitude. The property ``kind`` of a feature s
 
 - ``free`` or ``room``, or nothing at all: polygons of free space
 - ``wall`` or ``obstacle``: polygons, or lines with a property ``width``, that are cut out of it
-- ``door``: a line from jamb to jamb
+- ``door``: a line from jamb to jamb; on a wall of up to half a metre that runs right through, the opening is cut
 - ``label``: a point with a ``name``, a ``number`` or both (a room may carry these itself)
 
 Other members, all optional: ``name`` of the plan, ``start``, the numbers of the cells in which a team starts.
