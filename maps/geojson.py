@@ -24,7 +24,7 @@ from shapely.geometry.base import BaseGeometry
 from maps.errors import PlanError, nearest, shown
 from maps.floorplan import FloorPlan, Label
 from maps.making import make_plan
-from maps.texts import load_json
+from maps.texts import load_json, write_whole
 from maps.units import ToMetres, frame_of, is_number
 
 __all__ = ["features_of", "geojson_text", "load_geojson", "parse_geometry", "read_geojson", "write_geojson"]
@@ -199,7 +199,7 @@ def _numbers(data: dict[str, Any], where: str) -> list[int]:
 
 def write_geojson(plan: FloorPlan, path: Path) -> Path:
     """Write a floor plan in our own schema; reading it back gives the same plan."""
-    path.write_text(geojson_text(plan), encoding="utf-8")
+    write_whole(path, geojson_text(plan).encode())
     return path
 
 

@@ -14,6 +14,7 @@ from maps.errors import PlanError, nearest
 from maps.floorplan import FloorPlan
 from maps.geojson import write_geojson
 from maps.pictures import MOST_PIXELS
+from maps.texts import reason, write_whole
 from maps.units import check_resolution
 
 __all__ = ["rasterise", "write_plan"]
@@ -58,7 +59,7 @@ def write_plan(plan: FloorPlan, path: str | Path, *, resolution: float = 0.05) -
             return (write_geojson(plan, path),)
         return _write_ros(plan, path, check_resolution(resolution, str(path)))
     except OSError as exc:
-        raise PlanError(f"{path}: the file cannot be written ({exc.strerror}).") from exc
+        raise PlanError(f"{path}: the file cannot be written ({reason(exc)}).") from exc
 
 
 def _write_ros(plan: FloorPlan, path: Path, resolution: float) -> tuple[Path, Path]:
@@ -81,8 +82,8 @@ def _write_ros(plan: FloorPlan, path: Path, resolution: float) -> tuple[Path, Pa
         "free_thresh": 0.196,
     }
     encoded = cv2.imencode(".png", rasterise(plan, resolution, origin, (rows, columns)))[1]
-    image.write_bytes(encoded.tobytes())
-    path.write_text(yaml.safe_dump(data, sort_keys=False), encoding="utf-8")
+    write_whole(image, encoded.tobytes())
+    write_whole(path, yaml.safe_dump(data, sort_keys=False).encode())
     return path, image
 
 
