@@ -11,8 +11,8 @@ from geomsim import Episode, Team, run_episode
 from maps import read_plan
 
 # The same examples on every machine, so that a failure is a change's doing; HYPOTHESIS_PROFILE=explore tries new ones.
-settings.register_profile("repeat", derandomize=True)
-settings.register_profile("explore", print_blob=True)
+settings.register_profile("repeat", derandomize=True, deadline=None)
+settings.register_profile("explore", print_blob=True, deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeat"))
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"

@@ -61,7 +61,7 @@ def draft_office() -> FloorPlan:
     core += _column([36, 35, 34], [7, 11, 14.5, 18], 48, 55)
     doors = [Door(pair, width=1.6) for pair in OPENINGS] + [Door((22, 23)), Door((25, 26))]
     doors += [
-        Door((room, hallway), at=0.15 if k % 2 else 0.85)
+        Door((room, hallway), at=0.25 if k % 2 else 0.75)
         for hallway, rooms in DOORS.items()
         for k, room in enumerate(rooms)
     ]

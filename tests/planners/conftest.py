@@ -6,14 +6,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
-from hypothesis import settings
 from hypothesis import strategies as st
 
 from planners import SearchGraph
 
 # How long an example takes says nothing on a machine that others use too.
-settings.register_profile("untimed", deadline=None)
-settings.load_profile("untimed")
 
 HOUSE = [(1, 4), (1, 8), (2, 8), (2, 9), (3, 4), (4, 5), (4, 6), (4, 9), (5, 7), (6, 7)]
 

@@ -1,0 +1,73 @@
+"""Cut a plan into few cells that look like rooms and hallways."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from discretize.rooms.candidates import candidate_cuts
+from discretize.rooms.faces import arrangement
+from discretize.rooms.fitting import fit
+from discretize.rooms.leftovers import absorb
+from discretize.rooms.merging import Limits
+from discretize.rooms.search import best_partition
+from discretize.rooms.structure import structure
+from maps import FloorPlan
+
+__all__ = ["RoomCut", "room_cells"]
+
+
+@dataclass(frozen=True, slots=True)
+class RoomCut:
+    """A plan cut into rooms and hallways.
+
+    Attributes
+    ----------
+    cells : tuple of shapely.Polygon
+        They cover the free space and do not overlap. A cell has holes where small obstacles stand in it.
+    notes : tuple of str
+        What a report should say about how they were made.
+    """
+
+    cells: tuple[shapely.Polygon, ...]
+    notes: tuple[str, ...]
+
+
+def room_cells(
+    plan: FloorPlan, *, tolerance: float = 0.1, radius: float = 0.2, rng: np.random.Generator | None = None
+) -> RoomCut:
+    """Cut a plan into few room- and hallway-like cells that are nearly convex.
+
+    Cuts from reflex vertices, doorways first, make an arrangement of faces. Unions of faces that stay nearly convex and
+    have no neck are pooled from many randomised merges, and a minimum set partition of the faces is chosen among them
+    exactly. Convexity is judged on the structure of the plan: walls straight, obstacles that are small or, in a scan,
+    no walls filled.
+
+    Parameters
+    ----------
+    plan : FloorPlan
+        What to cut. Its doors are boundaries of cells.
+    tolerance : float
+        Largest share of a cell's convex hull that may lie outside the cell, and of pairs of its points that may not
+        see each other. Twice as much in scans of furnished places.
+    radius : float
+        Of the robot, metres: what it cannot enter is no cell of its own.
+    rng : numpy.random.Generator or None
+        Shuffles merges; the same generator always if None, so that the same plan gives the same cells.
+    """
+    rng = np.random.default_rng(0) if rng is None else rng
+    scan = any(repair.kind == "removed furniture" for repair in plan.repairs)
+    allowed = 2 * tolerance if scan else tolerance
+    limits = Limits(1 - allowed, 1 - allowed, 0.6, 0.3) if scan else Limits(1 - allowed, 1 - allowed, 0.7, 0.4)
+    space = structure(plan.space, radius if scan else radius / 2, 4 * radius, 25 * radius if scan else 0.0)
+    doors = np.array([shapely.get_coordinates(door)[[0, -1]] for door in plan.doors]).reshape(-1, 2, 2)
+    cuts, doorways = candidate_cuts(space, doors, allowed, 2 * radius)
+    faces = arrangement(space, cuts, doorways, doors)
+    chosen, notes = best_partition(faces, limits, rng)
+    owner = np.empty(len(faces), dtype=np.intp)
+    for k, region in enumerate(chosen):
+        owner[list(region.faces)] = k
+    cells = fit(plan.space, faces, absorb(faces, owner, radius), reach=3 * radius)
+    if scan:
+        notes = (f"A scan of a furnished place: cells may miss convexity by {allowed:g} of their hulls.", *notes)
+    return RoomCut(tuple(cells), notes)
