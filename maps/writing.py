@@ -120,7 +120,21 @@ def rasterise(
         thin = inside[_pixels(across, shape)]
         beside[_pixels(middle[thin], shape)] = True
     image[beside] = OCCUPIED
+    _close_diagonals(image)
     return image
+
+
+def _close_diagonals(image: NDArray[np.uint8]) -> None:
+    """Make two pixels of wall that touch at a corner only share edges with a third; in place.
+
+    A reader that makes the wall straight would else pull them apart, and open a crack to see through.
+    """
+    free = image == FREE
+    left_up, right_up, left_down, right_down = free[:-1, :-1], free[:-1, 1:], free[1:, :-1], free[1:, 1:]
+    falling = ~left_up & ~right_down & right_up & left_down
+    rising = ~right_up & ~left_down & left_up & right_down
+    image[:-1, 1:][falling] = OCCUPIED
+    image[:-1, :-1][rising] = OCCUPIED
 
 
 def _pixels(xy: NDArray[np.float64], shape: tuple[int, int]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
