@@ -5,7 +5,7 @@ or they can only be longitude and latitude. The property ``kind`` of a feature s
 
 - ``free`` or ``room``, or nothing at all: polygons of free space
 - ``wall`` or ``obstacle``: polygons, or lines with a property ``width``, that are cut out of it
-- ``door``: a line from jamb to jamb
+- ``door``: a line from jamb to jamb; on a wall of up to half a metre that runs right through, the opening is cut
 - ``label``: a point with a ``name``, a ``number`` or both (a room may carry these itself)
 
 Other members, all optional: ``name`` of the plan, ``start``, the numbers of the cells in which a team starts.
@@ -24,7 +24,7 @@ from shapely.geometry.base import BaseGeometry
 from maps.errors import PlanError, nearest, shown
 from maps.floorplan import FloorPlan, Label
 from maps.making import make_plan
-from maps.texts import load_json
+from maps.texts import load_json, write_whole
 from maps.units import ToMetres, frame_of, is_number
 
 __all__ = ["features_of", "geojson_text", "load_geojson", "parse_geometry", "read_geojson", "write_geojson"]
@@ -199,7 +199,7 @@ def _numbers(data: dict[str, Any], where: str) -> list[int]:
 
 def write_geojson(plan: FloorPlan, path: Path) -> Path:
     """Write a floor plan in our own schema; reading it back gives the same plan."""
-    path.write_text(geojson_text(plan), encoding="utf-8")
+    write_whole(path, geojson_text(plan).encode())
     return path
 
 

@@ -1,10 +1,12 @@
-"""Files read whole, and the text, JSON and YAML in them, or a sentence why not."""
+"""Files read and written whole, and the text, JSON and YAML in them, or a sentence why not."""
 
 from __future__ import annotations
 
 import errno
 import json
+import os
 import stat
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +14,7 @@ import yaml
 
 from maps.errors import GeomsimError, PlanError, shortened, shown
 
-__all__ = ["LARGEST_FILE", "check_file", "load_json", "load_yaml", "read_bytes", "read_text", "reason"]
+__all__ = ["LARGEST_FILE", "check_file", "load_json", "load_yaml", "read_bytes", "read_text", "reason", "write_whole"]
 
 LARGEST_FILE = 1_000_000_000
 """A file of more bytes than this is not read."""
@@ -61,6 +63,17 @@ def read_text(path: Path, where: str, error: type[GeomsimError] = PlanError) -> 
         raise error(f"{where}: the file is not text, so it is not what {path.suffix} says.") from exc
 
 
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file whole, or leave what was there before; OSError or ValueError if it cannot be written."""
+    part = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    try:
+        part.write_bytes(content)
+        part.replace(path)
+    finally:
+        with suppress(OSError, ValueError):  # it has its name by now, or never was
+            part.unlink()
+
+
 def reason(exc: OSError | ValueError) -> str:
     """Say in a few words why the system does not give a file."""
     if isinstance(exc, ValueError):
@@ -74,12 +87,19 @@ def load_json(path: Path, where: str, error: type[GeomsimError] = PlanError) -> 
     """Load a JSON file; ``error`` if it is none, or holds numbers that are not finite or endlessly long."""
     text = read_text(path, where, error)
     try:
-        return json.loads(text, parse_constant=_no_number, parse_int=_whole)
+        data = json.loads(text, parse_constant=_no_number, parse_int=_whole)
     except _BadNumberError as exc:
         raise error(f"{where}: there is {exc} in it; coordinates must be finite numbers.") from exc
     except (json.JSONDecodeError, RecursionError) as exc:
         place = f" at line {exc.lineno}, column {exc.colno}: {exc.msg}" if isinstance(exc, json.JSONDecodeError) else ""
         raise error(f"{where}: the file is not valid JSON{place}.") from exc
+    if "\\ud" in text.lower():  # what stands for half a character could be read, but never be written again
+        try:
+            json.dumps(data, ensure_ascii=False).encode()
+        except UnicodeEncodeError as exc:
+            half = f"\\u{ord(exc.object[exc.start]):04x}"
+            raise error(f"{where}: the file is not valid JSON: {half} in it is half a character.") from exc
+    return data
 
 
 def load_yaml(path: Path, where: str) -> dict[str, Any]:

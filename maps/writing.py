@@ -14,6 +14,7 @@ from maps.errors import PlanError, nearest
 from maps.floorplan import FloorPlan
 from maps.geojson import write_geojson
 from maps.pictures import MOST_PIXELS
+from maps.texts import reason, write_whole
 from maps.units import check_resolution
 
 __all__ = ["rasterise", "write_plan"]
@@ -58,7 +59,7 @@ def write_plan(plan: FloorPlan, path: str | Path, *, resolution: float = 0.05) -
             return (write_geojson(plan, path),)
         return _write_ros(plan, path, check_resolution(resolution, str(path)))
     except OSError as exc:
-        raise PlanError(f"{path}: the file cannot be written ({exc.strerror}).") from exc
+        raise PlanError(f"{path}: the file cannot be written ({reason(exc)}).") from exc
 
 
 def _write_ros(plan: FloorPlan, path: Path, resolution: float) -> tuple[Path, Path]:
@@ -81,8 +82,8 @@ def _write_ros(plan: FloorPlan, path: Path, resolution: float) -> tuple[Path, Pa
         "free_thresh": 0.196,
     }
     encoded = cv2.imencode(".png", rasterise(plan, resolution, origin, (rows, columns)))[1]
-    image.write_bytes(encoded.tobytes())
-    path.write_text(yaml.safe_dump(data, sort_keys=False), encoding="utf-8")
+    write_whole(image, encoded.tobytes())
+    write_whole(path, yaml.safe_dump(data, sort_keys=False).encode())
     return path, image
 
 
@@ -119,7 +120,21 @@ def rasterise(
         thin = inside[_pixels(across, shape)]
         beside[_pixels(middle[thin], shape)] = True
     image[beside] = OCCUPIED
+    _close_diagonals(image)
     return image
+
+
+def _close_diagonals(image: NDArray[np.uint8]) -> None:
+    """Make two pixels of wall that touch at a corner only share edges with a third; in place.
+
+    A reader that makes the wall straight would else pull them apart, and open a crack to see through.
+    """
+    free = image == FREE
+    left_up, right_up, left_down, right_down = free[:-1, :-1], free[:-1, 1:], free[1:, :-1], free[1:, 1:]
+    falling = ~left_up & ~right_down & right_up & left_down
+    rising = ~right_up & ~left_down & left_up & right_down
+    image[:-1, 1:][falling] = OCCUPIED
+    image[:-1, :-1][rising] = OCCUPIED
 
 
 def _pixels(xy: NDArray[np.float64], shape: tuple[int, int]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

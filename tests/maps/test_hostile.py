@@ -89,6 +89,9 @@ def png(width, height, rows):
             "5e+154 m x 4e+154 m",
             id="larger than the universe",
         ),
+        pytest.param(
+            '{"name": "\\uD800x", ' + json.dumps(ROOM)[1:], "\\ud800 in it is half a character", id="half a character"
+        ),
     ],
 )
 def test_geojson_gets_one_short_sentence(tmp_path, text, sentence):
@@ -185,6 +188,12 @@ def test_text_may_begin_with_a_byte_order_mark(tmp_path):
     path = tmp_path / "world.yaml"
     path.write_bytes(BOM + b"rooms:\r\n- name: a\r\n  footprint: {type: box, dims: [5, 4]}\r\n")
     assert read_plan(path).area == 20.0
+
+
+def test_a_character_in_two_halves_is_one(tmp_path):
+    path = tmp_path / "plan.geojson"
+    path.write_text('{"name": "\\ud83d\\ude00", ' + json.dumps(ROOM)[1:])
+    assert read_plan(path).name == "\U0001f600"
 
 
 @pytest.mark.parametrize("suffix", ["geojson", "yaml", "png", "wkt", "map", "dxf", "svg", "ifc", "gml"])

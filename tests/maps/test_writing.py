@@ -1,3 +1,7 @@
+import errno
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 import shapely
@@ -74,3 +78,18 @@ def test_what_cannot_be_written_is_refused(name, more, sentence, tmp_path):
     with pytest.raises(PlanError, match=sentence):
         write_plan(read_plan("house"), tmp_path / name, **more)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["plan.geojson", "plan.yaml"])
+def test_a_full_disk_leaves_what_was_there(name, tmp_path, monkeypatch):
+    def full(path, content):
+        with path.open("wb") as file:
+            file.write(content[:10])
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    (tmp_path / name).write_text("what was there")
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(PlanError, match=f"{name}: the file cannot be written .No space left on device"):
+        write_plan(read_plan("house"), tmp_path / name)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text() == "what was there"
