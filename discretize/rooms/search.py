@@ -13,10 +13,10 @@ from discretize.rooms.selection import partition
 __all__ = ["best_partition", "mutual_sight"]
 
 RUNS = 12  # randomised merges of a plan of ordinary size
-EFFORT = 6000  # faces times merges; larger plans get fewer merges
+EFFORT = 15_000  # faces times merges; larger plans get fewer merges
 MANY = 10_000  # faces; a plan with more is not improved any further
 SHARES = (0.0, 0.2, 0.2, 0.4, 0.4)  # of the cells that are broken before the merges that improve a partition
-ROUNDS = 2
+ROUNDS = 3
 CONVEX, SIGHT, OPEN = 1.0, 2.0, 0.15  # weights in the cost of a cell, beside 1 for being one
 
 
