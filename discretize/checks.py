@@ -157,13 +157,13 @@ def _place(*geometries: shapely.Geometry) -> str:
 
 
 def _shape_problems(cellmap: CellMap, convexity: NDArray[np.float64]) -> list[str]:
+    promised = METHODS[cellmap.method].convexity if cellmap.method in METHODS else 0.0
     problems = [
         f"Cell {k + 1} is not one simple polygon."
         for k, cell in enumerate(cellmap.cells)
-        if not cell.is_valid or cell.is_empty or cell.interiors
+        if not cell.is_valid or cell.is_empty or (cell.interiors and promised > 0)
     ]
     problems += cover_problems(cellmap.plan, cellmap.cells)
-    promised = METHODS[cellmap.method].convexity if cellmap.method in METHODS else 0.0
     problems += [
         f"Cell {k + 1} fills {convexity[k]:.4f} of its convex hull; at least {promised:g} was promised."
         for k in np.flatnonzero(convexity < promised - _ROUND).tolist()

@@ -8,6 +8,7 @@ import shapely
 from discretize.exact import exact_cells
 from discretize.implicants import CONVEXITY
 from discretize.quine_mccluskey import quine_mccluskey_cells
+from discretize.rooms import room_cells
 from discretize.visibility import visibility_cells
 from maps import FloorPlan
 
@@ -25,7 +26,8 @@ class Method:
     cut : callable
         From a plan to simple polygons that cover its free space and do not overlap.
     convexity : float
-        Least area of a cell as a share of its convex hull's that the method promises.
+        Least area of a cell as a share of its convex hull's that the method promises; 0 for a method that judges
+        convexity with small obstacles left out, whose cells may have holes where those stand.
     summary : str
         One line about it.
     source : str
@@ -48,6 +50,13 @@ METHODS: dict[str, Method] = {
             1.0,
             "strictly convex cells: triangles merged while they stay convex; never fails",
             "Hertel and Mehlhorn 1983, on a constrained Delaunay triangulation",
+        ),
+        Method(
+            "rooms",
+            lambda plan: room_cells(plan).cells,
+            0.0,
+            "few cells, like rooms and stretches of hallway as a person would draw them, nearly convex",
+            "our own: doorway cuts, an arrangement of faces, pooled random merges, an exact minimum partition",
         ),
         Method(
             "quine-mccluskey",

@@ -20,7 +20,7 @@ __all__ = ["discretize"]
 def discretize(
     plan: str,
     *,
-    method: Annotated[str, Parameter(help="How to cut: exact, quine-mccluskey or visibility.")] = "exact",
+    method: Annotated[str, Parameter(help="How to cut: exact, rooms, quine-mccluskey or visibility.")] = "exact",
     cells: Annotated[
         Path | None, Parameter(help="Cells that this command wrote and a person may have changed, to be checked.")
     ] = None,
