@@ -160,7 +160,13 @@ class Experiment:
             "start": [cell + 1 for cell in self.starts],
             "geometry": hashlib.sha256(geometry).hexdigest()[:16],
             "methods": [method.name for method in self.methods],
-            "planners": [repr(method.planner) for method in self.methods],
+            "planners": [_told(method.planner) for method in self.methods],
             "trials": self.trials,
             "team_runs": self.team_runs,
         }
+
+
+def _told(planner: object) -> str:
+    """Tell a planner with its parameters if it has a text of its own, else by its class: no address of memory."""
+    kind = type(planner)
+    return repr(planner) if kind.__repr__ is not object.__repr__ else f"{kind.__module__}.{kind.__qualname__}"
