@@ -137,7 +137,7 @@ class Walls:
 
 def _free_on_the_left(plan: FloorPlan) -> NDArray[np.float64]:
     """Return the wall segments, shape (W, 2, 2), each with the free space to its left."""
-    rings = shapely.get_rings(shapely.orient_polygons(plan.space))
+    rings = shapely.get_rings(shapely.get_parts(shapely.orient_polygons(plan.space)))
     coords, ring = shapely.get_coordinates(rings, return_index=True)
     follows = ring[1:] == ring[:-1]
     return np.stack([coords[:-1][follows], coords[1:][follows]], axis=1)
