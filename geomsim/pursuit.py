@@ -257,7 +257,7 @@ class _Pursuit:
                 self.quarry.robots = self.work.positions[0]
                 self.work.step(k * dt, dt)
                 self.quarry.step(dt)
-                time = (k + 1) * dt
+                time = round((k + 1) * dt, 6)  # 0.3, not 0.30000000000000004
                 self._note(time)
                 if (k + 1) % self.timing.steps_per_belief == 0:
                     self.work.learn()

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from geomsim.cli.console import complain, progress, say, say_json
 from geomsim.cli.drawing import DrawFlags
 from geomsim.cli.flags import JsonFlag, OutFlag, ScenarioFlags
+
+if TYPE_CHECKING:
+    from geomsim.episode import Episode
 
 __all__ = ["run"]
 
@@ -84,8 +87,19 @@ def _count(pursuers: int) -> str:
     return "1 pursuer" if pursuers == 1 else f"{pursuers} pursuers"
 
 
-def _report(episode: Any, files: dict[str, Path], *, json: bool) -> None:
+def _unreached(episode: Episode) -> list[str]:
+    """Say how much of the building the robots, and so the evader, cannot get to."""
+    parts = episode.cells.components
+    apart = int((parts != parts[episode.pursuer_cells[0, 0]]).sum())
+    if not apart:
+        return []
+    radius = episode.cells.radius
+    return [f"{apart} of {len(parts)} cells cannot be reached from the start by a body of radius {radius:g} m."]
+
+
+def _report(episode: Episode, files: dict[str, Path], *, json: bool) -> None:
     out = episode.outcome
+    notes = [*_unreached(episode), *out.notes]
     if json:
         say_json(
             {
@@ -99,7 +113,7 @@ def _report(episode: Any, files: dict[str, Path], *, json: bool) -> None:
                 "cells": len(episode.cells),
                 "seed": episode.scenario["seed"],
                 "scenario": episode.scenario,
-                "notes": [*(repair.message for repair in episode.plan.repairs), *out.notes],
+                "notes": [*(repair.message for repair in episode.plan.repairs), *notes],
                 "files": {kind: str(path) for kind, path in files.items()},
             }
         )
@@ -109,7 +123,7 @@ def _report(episode: Any, files: dict[str, Path], *, json: bool) -> None:
     where = "" if out.position is None else f", at ({out.position[0]:.1f}, {out.position[1]:.1f}) m"
     say(f"{episode}{where}")
     say(f"chance of capture by then that the belief predicted: {out.predicted:.2f}")
-    for note in out.notes:
+    for note in notes:
         say(note)
     for kind, path in files.items():
         say(f"{kind + ':':<10} {path}")
