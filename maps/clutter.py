@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import cv2
 import numpy as np
 import shapely
@@ -86,7 +88,8 @@ def _touches_once(opened: Mask, label: NDArray[np.int32]) -> Mask:
 
     once = np.zeros(int(label.max()) + 1, dtype=np.bool_)
     padded, space = np.pad(label, 1), np.pad(opened, 1)
-    for number, (rows, columns) in enumerate(find_objects(padded), 1):
+    objects: list[Any] = find_objects(padded)  # every number from 1 is there, so none of them is None
+    for number, (rows, columns) in enumerate(objects, 1):
         window = np.s_[rows.start - 1 : rows.stop + 1, columns.start - 1 : columns.stop + 1]
         around = cv2.dilate((padded[window] == number).astype(np.uint8), np.ones((3, 3), np.uint8))
         contact = (around > 0) & space[window]

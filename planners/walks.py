@@ -97,7 +97,7 @@ class JointChain:
         self.unseen = np.ones(self.shape)
         for axis, walk in enumerate(self.walks):
             kept = model.looks.kept(walk.views)
-            self.unseen *= np.expand_dims(kept, [k for k in range(len(self.walks)) if k != axis])
+            self.unseen *= np.expand_dims(kept, tuple(k for k in range(len(self.walks)) if k != axis))
 
     def wandering_times(self) -> NDArray[np.float64]:
         """Return the expected time to capture from everywhere, for pursuers that wander; seconds, ``self.shape``.

@@ -1,6 +1,7 @@
 """The command line as a person meets it: what it prints, what it writes, how it refuses."""
 
 import errno
+import inspect
 import json
 import os
 import shlex
@@ -423,8 +424,8 @@ NO_DEFAULT = {"plan", "resolution", "units", "options", "cells"}
 
 @pytest.mark.parametrize("key", [key for key in Scenario.model_fields if key not in NO_DEFAULT])
 def test_help_tells_defaults(key: str) -> None:
-    docs = f"{PlanFlags.__doc__}{ScenarioFlags.__doc__}"
-    doc = " ".join(docs.split(f"    {key}\n", 1)[1].split())
+    docs = "\n".join(inspect.cleandoc(flags.__doc__ or "") for flags in (PlanFlags, ScenarioFlags))
+    doc = " ".join(docs.split(f"\n{key}\n", 1)[1].split())
     default = Scenario.model_fields[key].default
     words = {"start": "the plan's own", "range": "without limit", "evader_start": "a random one"}
     words |= {"level": "the largest", "structure": "if it is plainly a scan"}

@@ -294,7 +294,7 @@ def same_cut(s: Array, o: Array) -> bool:
 def distinct(cuts: Array) -> Array:
     """Drop cuts that do the same as an earlier one, and those too short to matter; shape (k, 2, 2)."""
     cuts = cuts[np.hypot(*(cuts[:, 1] - cuts[:, 0]).T) > SHORT]
-    middles = shapely.points(cuts.mean(1))
+    middles = np.asarray(shapely.points(cuts.mean(1)), dtype=object)
     i, j = shapely.STRtree(middles).query(middles, predicate="dwithin", distance=0.5)
     i, j = i[j < i], j[j < i]
     same = _same(cuts[i], cuts[j])

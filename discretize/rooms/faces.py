@@ -126,7 +126,7 @@ def _adjacency(polygons: NDArray[np.object_], doorways: shapely.Geometry, doors:
     ends = GRID * np.stack([key[shared, :2], key[shared, 2:]], axis=1)
     middle = shapely.points(ends.mean(1))
     in_doorway = np.where(shapely.dwithin(doorways, middle, 2 * GRID), length, 0.0)
-    on_door = shapely.dwithin(doors, middle, 2 * GRID)
+    on_door = np.asarray(shapely.dwithin(doors, middle, 2 * GRID), dtype=np.bool_)
     first, second = np.minimum(i, j), np.maximum(i, j)
     order = np.flatnonzero(i != j)
     order = order[np.lexsort((second[order], first[order]))]
