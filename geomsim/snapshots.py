@@ -102,7 +102,10 @@ def draw_snapshots(
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
-    """Where things are on a sheet, in pixels; ``panel`` is the box of every panel within its own corner."""
+    """Where things are on a sheet, in pixels; ``panel`` is the box of the plan within each part of the sheet.
+
+    A part is larger than its plan by a border, for robots that stand at the outer walls.
+    """
 
     times: list[float]
     width: int
@@ -117,12 +120,15 @@ class _Layout:
         columns = _columns(len(times), (x1 - x0) / (y1 - y0))
         rows = math.ceil(len(times) / columns)
         unit = width / 850
-        margin, gap, caption, foot = round(10 * unit), round(16 * unit), round(24 * unit), round(58 * unit)
-        wide = (width - 2 * margin - (columns - 1) * gap) // columns
+        border, caption, foot = round(10 * unit), round(16 * unit), round(68 * unit)
+        part = width // columns
+        wide = part - 2 * border
         high = min(round(wide * (y1 - y0) / (x1 - x0)), 4 * wide)
         places = [divmod(k, columns) for k in range(len(times))]
-        corners = [(margin + column * (wide + gap), margin + row * (high + caption)) for row, column in places]
-        return cls(times, width, 2 * margin + rows * (high + caption) + foot, unit, Box(0, 0, wide, high), corners)
+        row_height = high + 2 * border + caption
+        corners = [(column * part, row * row_height) for row, column in places]
+        panel = Box(border, border, border + wide, border + high)
+        return cls(times, width, rows * row_height + foot, unit, panel, corners)
 
 
 def _draw_sheet(
@@ -139,7 +145,7 @@ def _draw_sheet(
     timeline = Timeline(episode)
     for time, (left, top) in zip(layout.times, layout.corners, strict=True):
         moment = timeline.at(time)
-        part = sheet.part(Box(left, top, left + panel.width, top + panel.height))
+        part = sheet.part(Box(left, top, left + panel.right + panel.left, top + panel.bottom + panel.top))
         paint(part, colours.ramp[scale.steps(shares(episode.beliefs[moment.step]))])
         team = range(len(moment.pursuers))
         for r in team:
@@ -149,9 +155,16 @@ def _draw_sheet(
         if moment.captured and by is not None:
             figures.spotting(part, moment.pursuers[by], moment.evader)
             told += f" · captured by P{by + 1}"
-        figures.evader(part, moment.evader, captured=moment.captured)
-        figures.robots(part, moment.pursuers, moment.headings, prefix="P", last=-1 if by is None else by)
-        at = (left + panel.width / 2, top + panel.height + 12 * unit)
+        figures.bodies(
+            part,
+            moment.pursuers,
+            moment.headings,
+            moment.evader,
+            captured=moment.captured,
+            prefix="P",
+            last=-1 if by is None else by,
+        )
+        at = (left + panel.left + panel.width / 2, top + panel.bottom + panel.top + 4 * unit)
         sheet.text(told, at, 13 * unit, colours.text, "centre")
 
     margin, top = round(10 * unit), layout.height - round(52 * unit)

@@ -118,6 +118,16 @@ def test_render_draws_the_same_again(call) -> None:
     assert Path("again/snapshots.png").read_bytes() == Path("run/snapshots.png").read_bytes()
 
 
+def test_render_draws_the_cells_of_a_record(call) -> None:
+    call("run", "house", "--no-video", "--no-replay", "--no-snapshots", "--out", "run")
+    call("discretize", "house", "--out", "cut")
+    few = ["--no-video", "--no-replay", "--no-snapshots", "--cells-picture"]
+    assert call("render", "run/episode.npz", *few)[0] == 0
+    assert Path("run/cells.png").read_bytes() == Path("cut/cells.png").read_bytes()
+    assert call("render", "run/episode.npz", *few, "--snapshots-format", "svg")[0] == 0
+    assert "</svg>" in Path("run/cells.svg").read_text()
+
+
 def test_discretize_house(call) -> None:
     code, out, err = call("discretize", "house", "--json")
     assert (code, err) == (0, "")

@@ -16,6 +16,8 @@ __all__ = ["DaskFlag", "WorkersFlag", "compare"]
 WorkersFlag = Annotated[int | None, Parameter(name="--workers", help="Processes; by default one for each core.")]
 DaskFlag = Annotated[str | None, Parameter(name="--dask", help="Address of a Dask scheduler to do the work.")]
 
+_FORMATS = ("png", "svg", "pdf")
+
 #: trials are given up after this, unless told otherwise, seconds: far more than a team needs that stands still
 _LIMIT = 10_000.0
 
@@ -31,7 +33,8 @@ def compare(
     workers: WorkersFlag = None,
     dask: DaskFlag = None,
     scenario: Annotated[Path | None, Parameter(help="A scenario file (TOML); flags override its keys.")] = None,
-    figures: Annotated[bool, Parameter(help="Draw means and capture curves.")] = True,
+    figures: Annotated[bool, Parameter(help="Draw means, capture curves and predictions.")] = True,
+    figures_format: Annotated[str, Parameter(help="png, svg or pdf.")] = "png",
     out: OutFlag = None,
     json: JsonFlag = False,
     flags: ScenarioFlags = ScenarioFlags(),  # noqa: B008 a frozen value without fields set
@@ -49,13 +52,15 @@ def compare(
     """
     from geomsim.scenario import read_scenario
     from geomsim.trials import dask_executor, default_methods, run_trials
-    from maps import GeomsimError
+    from maps import GeomsimError, nearest
 
     given = flags.given() | ({} if plan is None else {"plan": plan})
     for key in ("planner", "cost", "depth", "options"):
         if key in given:
             flag = "option" if key == "options" else key
             raise GeomsimError(f"compare takes --methods, with each method's whole name, not --{flag}.")
+    if figures_format not in _FORMATS:
+        raise GeomsimError(f"--figures-format is not {figures_format!r}: {nearest(figures_format, _FORMATS)}")
     told = read_scenario(scenario, {"time_limit": _LIMIT} | given if scenario is None else given)
     names = default_methods() if methods is None else [name.strip() for name in methods.split(",")]
     place, cells = told.place()
@@ -85,21 +90,23 @@ def compare(
     except KeyboardInterrupt:
         complain(f"Interrupted; what was finished is in {folder}, and the same command goes on from there.")
         return 130
-    _report(result, folder, figures=figures, json=json)
+    _report(result, folder, figures=figures_format if figures else None, json=json)
     return 0
 
 
-def _report(result: Any, folder: Path, *, figures: bool, json: bool) -> None:
+def _report(result: Any, folder: Path, *, figures: str | None, json: bool) -> None:
     from json import dumps
 
     from geomsim.files import write_text
 
     told = result.as_dict()
-    if figures:
-        from geomsim.trials.figures import draw_curves, draw_means
+    if figures is not None:
+        from geomsim.trials.figures import FIGURES
 
-        told["files"]["means"] = str(draw_means(result, folder / "means.png"))
-        told["files"]["curves"] = str(draw_curves(result, folder / "curves.png"))
+        for name, draw in FIGURES.items():
+            drawn = draw(result, folder / f"{name}.{figures}")
+            if drawn is not None:
+                told["files"][name] = str(drawn)
     told["files"]["summary"] = str(folder / "summary.json")
     write_text(folder / "summary.json", dumps(told, indent=1) + "\n")
     if json:

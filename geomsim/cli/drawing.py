@@ -36,6 +36,8 @@ class DrawFlags:
         Write a page to replay the pursuit in a browser.
     frames
         Write every frame of the video as PNG.
+    cells_picture
+        Write a picture of the cells with their numbers, portals and routes, in the format of the contact sheet.
     video_format
         mp4, webm or gif.
     snapshots_format
@@ -54,12 +56,15 @@ class DrawFlags:
         light or dark.
     hide_evader
         Do not show the evader before it is captured.
+    numbers
+        Show the number of each cell that has room for it, in video and frames.
     """
 
     video: bool = True
     snapshots: bool = True
     replay: bool = True
     frames: bool = False
+    cells_picture: bool = False
     video_format: str = "mp4"
     snapshots_format: str = "png"
     times: str | None = None
@@ -69,6 +74,7 @@ class DrawFlags:
     size: str | None = None
     theme: str = "light"
     hide_evader: bool = False
+    numbers: bool = False
 
     def check(self) -> None:
         """Refuse what cannot be drawn, before hours are spent on what there is to draw."""
@@ -93,6 +99,11 @@ class DrawFlags:
         if self.snapshots:
             sheet = folder / f"snapshots.{self.snapshots_format}"
             files["snapshots"] = episode.save_snapshots(sheet, times=self._times(), theme=self.theme)
+        if self.cells_picture:
+            from geomsim.drawing import write_cells_picture
+
+            picture = folder / f"cells.{self.snapshots_format}"
+            files["cells"] = write_cells_picture(episode.cells, picture, theme=self.theme)
         if self.replay:
             files["replay"] = episode.save_replay(folder / "replay.html")
         if self.video:
@@ -111,7 +122,7 @@ class DrawFlags:
         for name in (
             "replay.html",
             *(f"pursuit.{suffix}" for suffix in _VIDEOS),
-            *(f"snapshots.{suffix}" for suffix in _SHEETS),
+            *(f"{sheet}.{suffix}" for sheet in ("snapshots", "cells") for suffix in _SHEETS),
         ):
             (folder / name).unlink(missing_ok=True)
         for frame in (folder / "frames").glob("frame_*.png"):
@@ -121,7 +132,7 @@ class DrawFlags:
         from geomsim.drawing import FrameStyle
 
         evader = "hidden" if self.hide_evader else "shown"
-        return FrameStyle(size=self._size() or (1280, 720), theme=self.theme, evader=evader)
+        return FrameStyle(size=self._size() or (1280, 720), theme=self.theme, evader=evader, numbers=self.numbers)
 
     def _size(self) -> tuple[int, int] | None:
         if self.size is None:

@@ -24,6 +24,9 @@ from maps import FloorPlan
 
 __all__ = ["draw_cells", "write_cells_picture"]
 
+#: height of the line of text above the plan, thin lines
+_HEADER = 46
+
 _HUES = (20.0, 75.0, 125.0, 190.0, 250.0, 315.0)
 
 
@@ -42,7 +45,7 @@ def write_cells_picture(cells: CellMap, path: Path, *, width: int | None = None,
     sheet = VectorSheet(wide, high, colours.page)
     floor = VectorFloor(cells, box, colours, unit)
     floor.paint(sheet, _soft_colours(cells, colours))
-    _draw_over(sheet, cells, floor.view, colours, unit, floor.unit, wide)
+    _draw_over(sheet, cells, floor.view, colours, unit, floor.unit, (wide, high))
     return sheet.save(path)
 
 
@@ -68,7 +71,7 @@ def draw_cells(cells: CellMap, *, width: int | None = None, theme: str = "light"
     surface = Raster(blank(wide, high, colours.page))
     floor = Floor(cells, box, colours, unit)
     floor.paint(surface, _soft_colours(cells, colours))
-    _draw_over(surface, cells, floor.view, colours, unit, floor.unit, wide)
+    _draw_over(surface, cells, floor.view, colours, unit, floor.unit, (wide, high))
     return surface.image
 
 
@@ -78,20 +81,23 @@ def _layout(cells: CellMap, width: int | None) -> tuple[int, int, float, Box]:
         width = round(float(np.clip(1600 * np.sqrt(len(cells) / 300), 1600, 3200)))
     unit = 1.25 * float(np.sqrt(width / 1600))
     x0, y0, x1, y1 = cells.plan.bounds
-    margin, header = round(16 * unit), round(46 * unit)
+    margin, header = round(16 * unit), round(_HEADER * unit)
     tall = float(np.clip((y1 - y0) / (x1 - x0), 0.3, 1.2))
     box = Box(margin, header, width - margin, header + round((width - 2 * margin) * tall))
     return width, box.bottom + margin, unit, box
 
 
 def _draw_over(
-    surface: Surface, cells: CellMap, view: Viewport, theme: Theme, unit: float, fine: float, width: int
+    surface: Surface, cells: CellMap, view: Viewport, theme: Theme, unit: float, fine: float, size: tuple[int, int]
 ) -> None:
     """Draw what lies above the floor; ``fine`` is the unit of lines among cells."""
     _draw_routes(surface, cells, view, theme, fine)
-    _draw_repairs(surface, cells.plan, view, theme, fine)
+    # Rays of a scan may reach far beyond the plan, but never into the header.
+    header = round(_HEADER * unit)
+    below = surface.part(Box(0, header, *size))
+    _draw_repairs(below, cells.plan, Viewport(view.scale, (view.origin[0], view.origin[1] - header)), theme, fine)
     _draw_numbers(surface, cells, view, theme, unit)
-    _draw_header(surface, cells, view, theme, unit, width)
+    _draw_header(surface, cells, view, theme, unit, size[0])
 
 
 def _soft_colours(cells: CellMap, theme: Theme) -> NDArray[np.uint8]:
@@ -143,7 +149,7 @@ def _draw_numbers(surface: Surface, cells: CellMap, view: Viewport, theme: Theme
 
 
 def _draw_repairs(surface: Surface, plan: FloorPlan, view: Viewport, theme: Theme, unit: float) -> None:
-    thick = 1.6 * unit
+    thick = 1.2 * unit
     for repair in plan.repairs:
         for part in shapely.get_parts(repair.geometry):
             pixels = view.pixels(shapely.get_coordinates(part))
@@ -152,7 +158,7 @@ def _draw_repairs(surface: Surface, plan: FloorPlan, view: Viewport, theme: Them
                 surface.tint(outline, theme.repair, 0.35)
                 surface.line(outline, theme.repair, thick, closed=True)
             elif isinstance(part, shapely.Point):
-                surface.disc(pixels[0], 3 * unit, theme.repair)
+                surface.disc(pixels[0], 1.8 * unit, theme.repair)
             else:
                 surface.line(pixels, theme.repair, thick)
 

@@ -63,10 +63,26 @@ class Figures:
         surface.disc(pixels[-1], 4.5 * self._unit, colour)
         surface.disc(pixels[-1], 2.6 * self._unit, self._theme.casing)
 
-    def robots(self, surface: Surface, positions: Array, headings: Array, prefix: str = "", last: int = -1) -> None:
-        """Draw robots, ``last`` on top; those in one place are drawn beside each other, so that all can be read."""
-        centres = apart(self._view.pixels(positions), 19.0 * self._unit)
-        for number in sorted(range(len(positions)), key=lambda k: k == last):
+    def bodies(
+        self,
+        surface: Surface,
+        pursuers: Array,
+        headings: Array,
+        evader: Array | None = None,
+        *,
+        captured: bool = False,
+        prefix: str = "",
+        last: int = -1,
+    ) -> None:
+        """Draw the robots, ``last`` on top, and below them the evader, where it is to be seen.
+
+        Those in one place are drawn beside each other, so that all can be read.
+        """
+        places = pursuers if evader is None else np.vstack([pursuers, evader])
+        centres = apart(self._view.pixels(places), 19.0 * self._unit)
+        if evader is not None:
+            self._evader(surface, centres[-1], captured)
+        for number in sorted(range(len(pursuers)), key=lambda k: k == last):
             self._robot(surface, number, centres[number], float(headings[number]), prefix)
 
     def _robot(self, surface: Surface, number: int, centre: Array, heading: float, prefix: str) -> None:
@@ -82,9 +98,8 @@ class Figures:
         ends = np.stack([self._view.pixels(pursuer), self._view.pixels(evader)])
         surface.line(ends, self._theme.evader, 2.0 * self._unit)
 
-    def evader(self, surface: Surface, position: Array, *, captured: bool) -> None:
+    def _evader(self, surface: Surface, centre: Array, captured: bool) -> None:
         """Draw the evader, a diamond with an E; a ring around it once it is captured."""
-        centre = self._view.pixels(position)
         radius = 12.0 * self._unit
         if captured:
             _ring(surface, centre, radius + 6.0 * self._unit, self._theme.evader, 2.2 * self._unit)
@@ -119,7 +134,7 @@ def apart(places: Array, distance: float) -> Array:
         away = np.hypot(gap[..., 0], gap[..., 1])
         push = np.maximum(distance - away, 0.0) / 2
         np.fill_diagonal(push, 0.0)
-        if not push.any():
+        if push.max(initial=0.0) < 5e-3 * distance:
             break
         moved += (gap * (push / np.maximum(away, 1e-9))[..., None]).sum(axis=1) * 0.5
     return moved

@@ -73,7 +73,7 @@ class Floor:
         layers = [(_dot_cover(cells, local, shape, unit), theme.dots), (wall, theme.wall)]
         if portals:
             layers.insert(0, (_portal_cover(cells, local, shape, unit), theme.portal))
-        self._where, self._keep, self._add = _flatten(layers)
+        self._keep, self._add = _flatten(layers)
 
     def paint(self, surface: Raster, colours: NDArray[np.uint8]) -> None:
         """Draw the floor into its box of an image.
@@ -90,9 +90,8 @@ class Floor:
         palette[1:, :3] = colours[:, ::-1]
         pixels = np.take(palette.view(np.uint32).ravel(), self.labels, mode="clip").view(np.uint8)
         part = cv2.cvtColor(pixels.reshape(*self.labels.shape, 4), cv2.COLOR_BGRA2BGR)
-        flat = part.reshape(-1, 3)
-        flat[self._where] = flat[self._where] * self._keep + self._add + 0.5
-        surface.image[self.box.slices] = part
+        kept = cv2.multiply(part, self._keep, scale=1 / 255)
+        surface.image[self.box.slices] = cv2.add(kept, self._add)
 
     def restore_walls(self, image: Image, painted: Image) -> None:
         """Copy the walls from a painted image to one on which something was drawn over them."""
@@ -181,15 +180,13 @@ def _discs(shape: tuple[int, int], centres: Iterable[NDArray[np.float64]], radiu
     return _cover(shape, draw)
 
 
-def _flatten(
-    layers: list[tuple[NDArray[np.float32], str]],
-) -> tuple[NDArray[np.intp], NDArray[np.float32], NDArray[np.float32]]:
-    """Merge layers, the lowest first, into what each touched pixel keeps of the floor and what is added to it."""
-    keep = np.ones(layers[0][0].size, dtype=np.float32)
-    add = np.zeros((keep.size, 3), dtype=np.float32)
+def _flatten(layers: list[tuple[NDArray[np.float32], str]]) -> tuple[Image, Image]:
+    """Merge layers, the lowest first, into what each pixel keeps of the floor, of 255, and what is added to it."""
+    keep = np.ones((*layers[0][0].shape, 1), dtype=np.float32)
+    add = np.zeros((*layers[0][0].shape, 3), dtype=np.float32)
     for cover, colour in layers:
-        left = 1.0 - cover.ravel()
+        left = 1.0 - cover[..., None]
         keep *= left
-        add = add * left[:, None] + cover.ravel()[:, None] * np.array(bgr(colour), dtype=np.float32)
-    where = np.flatnonzero(keep < 1.0)
-    return where, keep[where, None], add[where]
+        add = add * left + cover[..., None] * np.array(bgr(colour), dtype=np.float32)
+    kept = np.repeat(np.rint(255 * keep).astype(np.uint8), 3, axis=2)
+    return kept, np.rint(add).astype(np.uint8)

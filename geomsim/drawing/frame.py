@@ -141,9 +141,14 @@ class FrameDrawer:
         by = self.episode.outcome.pursuer
         if moment.captured and by is not None:
             figures.spotting(surface, moment.pursuers[by], moment.evader)
-        if style.evader == "shown" or moment.captured:
-            figures.evader(surface, moment.evader, captured=moment.captured)
-        figures.robots(surface, moment.pursuers, moment.headings, last=-1 if by is None else by)
+        figures.bodies(
+            surface,
+            moment.pursuers,
+            moment.headings,
+            moment.evader if style.evader == "shown" or moment.captured else None,
+            captured=moment.captured,
+            last=-1 if by is None else by,
+        )
         self._strip.draw(surface, moment)
         self._draw_time(surface, moment)
         return image

@@ -100,8 +100,9 @@ class Raster:
     def tint(self, pixels: NDArray[np.float64], colour: str, opacity: float) -> None:
         """Blend a colour over the area within one ring, and touch nothing else."""
         height, width = self.image.shape[:2]
-        x0, y0 = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - 2, 0)
-        x1, y1 = np.minimum(np.ceil(pixels.max(axis=0)).astype(int) + 3, (width, height))
+        x, y = pixels.T
+        x0, y0 = max(int(x.min()) - 3, 0), max(int(y.min()) - 3, 0)
+        x1, y1 = min(int(x.max()) + 4, width), min(int(y.max()) + 4, height)
         if x0 >= x1 or y0 >= y1:
             return
         under = self.image[y0:y1, x0:x1]

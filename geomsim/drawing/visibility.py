@@ -69,7 +69,8 @@ class Walls:
         kept = (span > 0) & (span < np.pi + 1e-6) & (distance < limit)
         normal, distance, first, last, span = (a[kept] for a in (normal, distance, first, last, span))
 
-        angles = np.unique(np.concatenate([first, last, self._extra_angles(normal, distance, limit, heading, field)]))
+        extra = _extra_angles(normal, distance, reach if reach < self._reach else None, heading, field)
+        angles = np.unique(np.concatenate([first, last, extra]))
         width = np.diff(angles, append=angles[:1] + 2 * np.pi)
         middle = angles + width / 2
         count = len(angles)
@@ -88,51 +89,52 @@ class Walls:
         winner = np.full(count, -1)
         won = nearness == nearest[interval]
         winner[interval[won]] = wall[won]
-        seen: NDArray[np.float64] = eye + self._outline(angles, middle, winner, slope, limit, heading, field)
+        seen: NDArray[np.float64] = eye + _outline(angles, middle, winner, slope, limit, heading, field)
         return seen
 
-    def _extra_angles(
-        self,
-        normal: NDArray[np.float64],
-        distance: NDArray[np.float64],
-        limit: float,
-        heading: float,
-        field: float,
-    ) -> NDArray[np.float64]:
-        """Where something begins that is no wall corner: an arc, a wall's end of range, the field of view."""
-        foot = np.arctan2(normal[:, 1], normal[:, 0])
-        half = np.arccos(np.clip(distance / limit, 0, 1))
-        arc = np.arange(-np.pi, np.pi, _ARC_STEP)
-        edges = [] if field >= _ALL_AROUND else [heading - field / 2, heading + field / 2]
-        extra = np.concatenate([arc, foot - half, foot + half, edges])
-        turned: NDArray[np.float64] = np.arctan2(np.sin(extra), np.cos(extra))
-        return turned
 
-    @staticmethod
-    def _outline(
-        angles: NDArray[np.float64],
-        middle: NDArray[np.float64],
-        winner: NDArray[np.intp],
-        slope: NDArray[np.float64],
-        limit: float,
-        heading: float,
-        field: float,
-    ) -> NDArray[np.float64]:
-        """Join the ends of the nearest wall, or the circle of sight, in each interval."""
-        following = np.append(angles[1:], angles[0])
-        lines = np.vstack([slope, [[0.0, 0.0]]])[winner]  # the last line, of no wall, is for winner -1
-        corners = []
-        for angle in (angles, following):
-            ray = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-            nearness = np.maximum(np.sum(lines * ray, axis=1), 1.0 / limit)
-            corners.append(ray / nearness[:, None])
-        points = np.stack(corners, axis=1)
-        if field >= _ALL_AROUND:
-            return points.reshape(-1, 2)
+def _extra_angles(
+    normal: NDArray[np.float64], distance: NDArray[np.float64], reach: float | None, heading: float, field: float
+) -> NDArray[np.float64]:
+    """Where something begins that is no wall corner: an arc, a wall's end of range, the field of view."""
+    extra = []
+    if reach is not None:
+        foot = np.arctan2(normal[:, 1], normal[:, 0])
+        half = np.arccos(np.clip(distance / reach, 0, 1))
+        extra += [np.arange(-np.pi, np.pi, _ARC_STEP), foot - half, foot + half]
+    if field < _ALL_AROUND:
+        extra.append(heading + np.array([-field / 2, field / 2]))
+    angles = np.concatenate(extra) if extra else np.empty(0)
+    turned: NDArray[np.float64] = np.arctan2(np.sin(angles), np.cos(angles))
+    return turned
+
+
+def _outline(
+    angles: NDArray[np.float64],
+    middle: NDArray[np.float64],
+    winner: NDArray[np.intp],
+    slope: NDArray[np.float64],
+    limit: float,
+    heading: float,
+    field: float,
+) -> NDArray[np.float64]:
+    """Join what is nearest in each interval, once for neighbours in which it is the same wall."""
+    following = np.append(angles[1:], angles[0])
+    if field < _ALL_AROUND:
         turned = (middle - (heading - field / 2)) % (2 * np.pi)
         order = np.argsort(turned, kind="stable")
         inside = order[turned[order] < field]
-        return np.vstack([[[0.0, 0.0]], points[inside].reshape(-1, 2)])
+        angles, following, winner = angles[inside], following[inside], winner[inside]
+    begins = np.flatnonzero(np.append(True, winner[1:] != winner[:-1]) | (winner < 0))
+    ends = np.append(begins[1:], len(winner)) - 1
+    lines = np.vstack([slope, [[0.0, 0.0]]])[winner[begins]]  # the last line, of no wall, is for winner -1
+    corners = []
+    for angle in (angles[begins], following[ends]):
+        x, y = np.cos(angle), np.sin(angle)
+        far = 1.0 / np.maximum(lines[:, 0] * x + lines[:, 1] * y, 1.0 / limit)
+        corners.append(np.stack([x * far, y * far], axis=1))
+    points: NDArray[np.float64] = np.stack(corners, axis=1).reshape(-1, 2)
+    return points if field >= _ALL_AROUND else np.vstack([[[0.0, 0.0]], points])
 
 
 def _free_on_the_left(plan: FloorPlan) -> NDArray[np.float64]:

@@ -1,7 +1,8 @@
-"""Figures of a comparison: mean capture times as bars, and capture curves."""
+"""Figures of a comparison: mean capture times as bars, cost heuristics side by side, curves, predictions."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,12 +10,13 @@ import numpy as np
 
 from geomsim.files import replacing
 from geomsim.trials.results import Summary, Trials
+from geomsim.trials.statistics import Sample
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["draw_curves", "draw_means"]
+__all__ = ["FIGURES", "draw_curves", "draw_fidelity", "draw_heuristics", "draw_means"]
 
 # told apart by the colour-blind, and in grey by their dashes (Okabe and Ito's colours without yellow)
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
@@ -88,6 +90,101 @@ def draw_curves(trials: Trials, path: Path) -> Path:
     return _save(figure, path)
 
 
+def draw_heuristics(trials: Trials, path: Path) -> Path | None:
+    """Draw the paper's Fig. 5: mean capture time with its standard error, by coordination and lookahead, then by cost.
+
+    Parameters as for :func:`draw_means`.
+
+    Returns
+    -------
+    Path or None
+        None, and nothing is written, where fewer than two methods differ in their cost heuristic alone.
+    """
+    found = {line.name: line.observed for line in trials.summary().methods}
+    groups: dict[str, dict[str, Sample]] = {}
+    for method in trials.experiment.methods:
+        cost, depth = (str(getattr(method.planner, key, "")) for key in ("cost", "depth"))
+        coordination = method.name.removesuffix(f"-{depth}").removesuffix(f"-{cost}")
+        if cost and coordination != method.name:
+            label = f"{coordination}\n" + ("no lookahead" if depth == "1" else f"{depth} cells ahead")
+            groups.setdefault(label, {})[cost] = found.pop(method.name)
+    if max(map(len, groups.values()), default=0) < 2:
+        return None
+    costs = list(dict.fromkeys(cost for group in groups.values() for cost in group))
+    figure, axes = _figure(2.0 + 2.2 * len(groups), 4.6)
+    wide = 0.8 / len(costs)
+    for k, cost in enumerate(costs):
+        shown = [(x + (k - (len(costs) - 1) / 2) * wide, g[cost]) for x, g in enumerate(groups.values()) if cost in g]
+        places, bars = [x for x, _ in shown], [one.mean for _, one in shown]
+        axes.bar(places, bars, 0.92 * wide, color=_COLOURS[k % len(_COLOURS)], alpha=0.75, label=cost.replace("-", " "))
+        errors = [one.sem or 0.0 for _, one in shown]
+        axes.errorbar(places, bars, yerr=errors, fmt="none", ecolor=_INK, capsize=3, lw=1.2)
+    axes.set_xticks(range(len(groups)), list(groups))
+    axes.tick_params(axis="x", length=0)
+    axes.set_ylabel("mean time to capture, s")
+    axes.set_title(_title(trials, trials.summary()), loc="left", size=11)
+    axes.legend(frameon=False, fontsize=8.5, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    others = [f"{name} {one.mean:.1f} s" for name, one in found.items() if name in ("random", "stationary")]
+    if others:
+        axes.annotate("Not shown: " + ", ".join(others), (0, -42), xycoords="axes points", size=9, color=_INK)
+    return _save(figure, path)
+
+
+def draw_fidelity(trials: Trials, path: Path) -> Path | None:
+    """Draw the mean capture time that the cell model predicts against the one observed, method by method.
+
+    Parameters as for :func:`draw_means`.
+
+    Returns
+    -------
+    Path or None
+        None, and nothing is written, where no method has a prediction.
+    """
+    from matplotlib.ticker import LogLocator
+
+    summary = trials.summary()
+    told = [line for line in summary.methods if line.predicted and line.observed.mean > 0]
+    if not told:
+        return None
+    figure, axes = _figure(8.0, 5.2)
+    means = np.array([[line.predicted or np.nan, line.observed.mean] for line in told])
+    span = np.array([0.8 * means.min(), 1.25 * means.max()])
+    axes.fill_between(span, 0.9 * span, 1.1 * span, color="#9db8cf", alpha=0.35, lw=0, label="within 10 %")
+    axes.plot(span, span, color=_INK, lw=0.8)
+    for k, (line, (said, seen)) in enumerate(zip(told, means, strict=True)):
+        mark = "osD^vP*X"[k // len(_COLOURS) % 8]
+        colour = _COLOURS[k % len(_COLOURS)]
+        axes.errorbar(
+            said, seen, yerr=line.observed.sem or 0.0, fmt=mark, color=colour, ms=6, capsize=3, label=line.name
+        )
+    for scale, limits, axis in (
+        (axes.set_xscale, axes.set_xlim, axes.xaxis),
+        (axes.set_yscale, axes.set_ylim, axes.yaxis),
+    ):
+        scale("log")
+        limits(*span)
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("")
+    axes.set_xlabel("predicted in the cell model, s (logarithmic)")
+    axes.set_ylabel("mean of trials, s (logarithmic)")
+    tau = summary.rank_correlation
+    axes.set_title(
+        _title(trials, summary) + ("" if tau is None else f", Kendall\u2019s tau {tau:.2f}"), loc="left", size=11
+    )
+    axes.legend(loc="center left", frameon=False, fontsize=8.5, bbox_to_anchor=(1.0, 0.5))
+    return _save(figure, path)
+
+
+#: every figure of a comparison by the name of its file
+FIGURES: dict[str, Callable[[Trials, Path], Path | None]] = {
+    "means": draw_means,
+    "heuristics": draw_heuristics,
+    "curves": draw_curves,
+    "fidelity": draw_fidelity,
+}
+
+
 def _beside(count: int) -> dict[str, object]:
     return {"frameon": False, "fontsize": 8.5} | ({} if count <= 6 else {"bbox_to_anchor": (1.0, 0.5)})
 
@@ -111,6 +208,9 @@ def _figure(width: float, height: float) -> tuple[Figure, Axes]:
 
 
 def _save(figure: Figure, path: Path) -> Path:
-    with replacing(path) as part:
-        figure.savefig(part, bbox_inches="tight", facecolor="white")
+    from matplotlib import rc_context
+
+    undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix, {})
+    with replacing(path) as part, rc_context({"svg.hashsalt": path.stem}):
+        figure.savefig(part, bbox_inches="tight", facecolor="white", metadata=undated)
     return path

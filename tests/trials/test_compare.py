@@ -44,13 +44,31 @@ def test_json(done: dict) -> None:
 
 
 def test_files(done: dict) -> None:
-    assert set(done["files"]) >= {"trials", "means", "curves", "summary"}
+    assert set(done["files"]) >= {"trials", "means", "curves", "fidelity", "summary"}
+    assert "heuristics" not in done["files"]  # with one cost there is nothing to set side by side
     for kind, path in done["files"].items():
         data = Path(path).read_bytes()
         assert len(data) > 500, kind
         assert path.endswith(".png") == data.startswith(b"\x89PNG")
     saved = json.loads(Path(done["files"]["summary"]).read_text())
     assert saved == done
+
+
+def test_figures_in_vectors_group_heuristics_and_are_the_same_again(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    methods = "random,decoupled-entropy-1,decoupled-probability-1,decoupled-entropy-2"
+    argv = ["compare", "house", "--methods", methods, "--trials", "20", "--capture", "cell", "--workers", "1", "--json"]
+    kinds = ["means", "heuristics", "curves", "fidelity"]
+    drawn = []
+    for _ in range(2):
+        told = json.loads(run(capsys, *argv, "--figures-format", "svg", "--out", str(tmp_path))[1])
+        assert [Path(told["files"][kind]).name for kind in kinds] == [f"{kind}.svg" for kind in kinds]
+        drawn.append([Path(told["files"][kind]).read_text() for kind in kinds])
+    assert drawn[0] == drawn[1]
+    assert all(text.startswith("<?xml") for text in drawn[0])
+    code, _, err = run(capsys, *argv, "--figures-format", "bmp")
+    assert (code, "bmp" in err) == (2, True)
 
 
 def test_the_prediction_is_that_of_predict(capsys: pytest.CaptureFixture[str], done: dict) -> None:
