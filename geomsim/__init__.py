@@ -21,12 +21,14 @@ if TYPE_CHECKING:
     from discretize import CellMap, Portal, check_cells, convex_cells
     from geomsim.episode import Episode, Outcome, Status
     from geomsim.evaders import CentroidBoundary, Fleeing, Hiding, ShortestPaths, Still
+    from geomsim.guide import Guide, Order, Orders, Report
     from geomsim.pursuit import Timing, run_episode
     from geomsim.scenario import Scenario, read_scenario
     from geomsim.sensing import Sensor
     from geomsim.team import Evader, Team
     from geomsim.trials import Trials, run_trials
-    from maps import FloorPlan, GeomsimError
+    from geomsim.waypoints import Waypoint, plan_waypoints, record_waypoints
+    from maps import FloorPlan, GeomsimError, write_plan
     from maps import read_plan as load_plan
     from planners import Decoupled, Random, SearchGraph, Stationary
 
@@ -39,10 +41,14 @@ __all__ = [
     "Fleeing",
     "FloorPlan",
     "GeomsimError",
+    "Guide",
     "Hiding",
+    "Order",
+    "Orders",
     "Outcome",
     "Portal",
     "Random",
+    "Report",
     "Scenario",
     "SearchGraph",
     "Sensor",
@@ -53,26 +59,32 @@ __all__ = [
     "Team",
     "Timing",
     "Trials",
+    "Waypoint",
     "check_cells",
     "convex_cells",
     "load_plan",
+    "plan_waypoints",
     "read_scenario",
+    "record_waypoints",
     "run_episode",
     "run_trials",
+    "write_plan",
 ]
 
 # Where each public name lives: it is imported when first asked for, so that `import geomsim` costs next to nothing.
 _HOMES = {
     "discretize": ("CellMap", "Portal", "check_cells", "convex_cells"),
-    "maps": ("FloorPlan", "GeomsimError"),
+    "maps": ("FloorPlan", "GeomsimError", "write_plan"),
     "planners": ("Decoupled", "Random", "SearchGraph", "Stationary"),
     "geomsim.episode": ("Episode", "Outcome", "Status"),
     "geomsim.evaders": ("CentroidBoundary", "Fleeing", "Hiding", "ShortestPaths", "Still"),
+    "geomsim.guide": ("Guide", "Order", "Orders", "Report"),
     "geomsim.pursuit": ("Timing", "run_episode"),
     "geomsim.scenario": ("Scenario", "read_scenario"),
     "geomsim.sensing": ("Sensor",),
     "geomsim.team": ("Evader", "Team"),
     "geomsim.trials": ("Trials", "run_trials"),
+    "geomsim.waypoints": ("Waypoint", "plan_waypoints", "record_waypoints"),
 }
 
 

@@ -221,6 +221,12 @@ def test_listings(call, command: str) -> None:
         (["run", "house", "--speedup", "2", "--length", "9"], "give one of them"),
         (["convert", "house", "house.xyz"], "house.xyz"),
         (["predict", "house", "--start", "12"], "numbered from 1 to 9"),
+        (["export", "none.npz"], "none.npz"),
+        (["export", "none.npz", "--seed", "2"], "leave out --seed"),
+        (["export", "house", "--duration", "0"], "must be positive"),
+        (["export", "house", "--duration", "1e308"], "recorded positions"),
+        (["export", "house", "--pixel", "1e-9"], "resolution"),
+        (["export", "offise"], "office"),
         (["dance"], "dance"),
     ],
 )

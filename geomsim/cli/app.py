@@ -34,6 +34,7 @@ app.command("geomsim.cli.compare:compare", name="compare", help="Many methods, m
 app.command("geomsim.cli.reproduce:reproduce", name="reproduce", help="The paper's experiments, as a page.")
 app.command("geomsim.cli.render:render", name="render", help="Pictures and video from a saved episode.")
 app.command("geomsim.cli.convert:convert", name="convert", help="A floor plan from one format into another.")
+app.command("geomsim.cli.export:export", name="export", help="Waypoints, ROS map, cells and graph for other programs.")
 app.command("geomsim.cli.listing:maps", name="maps", help="The bundled floor plans.")
 app.command("geomsim.cli.listing:planners", name="planners", help="The planners, each with its source.")
 
