@@ -19,7 +19,16 @@ from geomsim.teamwork import Teamwork
 from maps import FloorPlan, GeomsimError, nearest
 from planners import AreaSpeedDegree, CaptureModel, MotionModel, SameCell, SearchGraph
 
-__all__ = ["CAPTURE_RULES", "HELD_UP", "Timing", "believed_capture", "check_clocks", "check_pursuit", "run_episode"]
+__all__ = [
+    "CAPTURE_RULES",
+    "HELD_UP",
+    "Pursuit",
+    "Timing",
+    "believed_capture",
+    "check_clocks",
+    "check_pursuit",
+    "run_episode",
+]
 
 CAPTURE_RULES = {
     "sight": "a pursuer has a free line of sight to the evader, within its range and field of view",
@@ -132,7 +141,7 @@ def run_episode(
     check_pursuit(cells, team, evader, capture)
     check_clocks(cells, team, evader, timing)
     seeds = seed, seed if team_seed is None else team_seed
-    pursuit = _Pursuit(plan, cells, team, evader, seeds, capture, motion or AreaSpeedDegree(evader.speed), timing)
+    pursuit = Pursuit(plan, cells, team, evader, seeds, capture, motion or AreaSpeedDegree(evader.speed), timing)
     outcome = pursuit.run(progress)
     if scenario is None:
         from geomsim.scenario import describe
@@ -222,7 +231,7 @@ class _Log:
         )
 
 
-class _Pursuit:
+class Pursuit:
     """A running episode: the team at work, and the evader."""
 
     def __init__(
@@ -235,44 +244,53 @@ class _Pursuit:
         capture: str,
         motion: MotionModel,
         timing: Timing,
+        crew: type[Teamwork] = Teamwork,
     ) -> None:
         theirs, ours = Streams(seeds[0]), Streams(seeds[1])
         starts = place_team(cells, team)
         hideout = place_evader(cells, evader, starts, theirs.placing)
         self.team, self.capture, self.timing = team, capture, timing
         believed = believed_capture(team, timing)
-        self.work = Teamwork(cells, team, starts, motion, believed, timing.belief_step, [ours.deciding])
+        self.work = crew(cells, team, starts, motion, believed, timing.belief_step, [ours.deciding])
         self.quarry = Quarry(plan.walls, self.work.routes, evader, [hideout], [theirs.moving])
         self.patience = theirs.noticing.exponential(size=team.pursuers)
         self.looked = np.zeros(team.pursuers)
         self.held_up: set[int] = set()
         self.log = _Log()
+        self._note(0.0)
+        self._believe(0.0)
 
     def run(self, progress: Callable[[float, float], None] | None) -> Outcome:
         """Step until capture, the time limit or Ctrl-C."""
         steps, dt = self.timing.steps, self.timing.physics_step
         status, captor = Status.TIME_LIMIT, None
-        self._note(0.0)
-        self._believe(0.0)
         try:
-            captor = self._captor()
+            captor = self.captor()
             for k in range(steps):
                 if captor is not None:
                     break
-                self.quarry.robots = self.work.positions[0]
+                before = self.work.positions[0]
                 self.work.step(k * dt, dt)
-                self.quarry.step(dt)
-                time = round((k + 1) * dt, 6)  # 0.3, not 0.30000000000000004
-                self._note(time)
-                if (k + 1) % self.timing.steps_per_belief == 0:
-                    self.work.learn()
-                    self._believe(time)
-                    if progress is not None:
-                        progress(time, float(self.work.beliefs[0, 0]))
-                captor = self._captor()
+                captor = self.settle(k, before)
+                if progress is not None and (k + 1) % self.timing.steps_per_belief == 0:
+                    progress((k + 1) * dt, float(self.work.beliefs[0, 0]))
         except KeyboardInterrupt:
             status = Status.INTERRUPTED
-        return self._outcome(Status.CAPTURED if captor is not None else status, captor)
+        return self.outcome(Status.CAPTURED if captor is not None else status, captor)
+
+    def settle(self, k: int, before: NDArray[np.float64]) -> int | None:
+        """Let the evader move in physics step ``k``, in which the team has moved already; return who captures it.
+
+        ``before`` holds where the robots were when the step began, shape (R, 2): what an evader sees that reacts.
+        """
+        self.quarry.robots = before
+        self.quarry.step(self.timing.physics_step)
+        time = round((k + 1) * self.timing.physics_step, 6)  # 0.3, not 0.30000000000000004
+        self._note(time)
+        if (k + 1) % self.timing.steps_per_belief == 0:
+            self.work.learn()
+            self._believe(time)
+        return self.captor()
 
     def _note(self, time: float) -> None:
         self.log.headings.append(self.work.headings[0])
@@ -286,7 +304,8 @@ class _Pursuit:
         self.log.belief_times.append(time)
         self.log.beliefs.append(self.work.beliefs[0])
 
-    def _captor(self) -> int | None:
+    def captor(self) -> int | None:
+        """Let the robots look once for a physics step; return who captures, counted from 0."""
         # evaders are kept in single precision where thousands are, and a robot must see the same in both cases
         target = self.quarry.positions[0].astype(np.float32).astype(np.float64)
         hidden = int(self.quarry.cells[0])
@@ -301,7 +320,8 @@ class _Pursuit:
                     return i
         return None
 
-    def _outcome(self, status: Status, captor: int | None) -> Outcome:
+    def outcome(self, status: Status, captor: int | None) -> Outcome:
+        """Tell how it ended, or stands."""
         captured, last = status is Status.CAPTURED, len(self.log.times) - 1
         x, y = self.log.positions[last][-1].tolist()
         names = [f"Pursuer {i + 1}" for i in range(self.team.pursuers)] + ["The evader"]

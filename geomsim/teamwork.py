@@ -92,7 +92,7 @@ class Teamwork:
         belief_step: float,
         deciding: Sequence[np.random.Generator],
     ) -> None:
-        self.team, self.routes = team, Routes(cells)
+        self.team, self.routes, self._where = team, Routes(cells), cells
         self.runs, self._shape = len(deciding), (len(deciding), team.pursuers)
         begin = [self.routes.stay(cell, 0.0) for cell in starts] * self.runs
         size = len(begin)
@@ -124,18 +124,38 @@ class Teamwork:
         return self._walkers.cells.reshape(self._shape)
 
     @property
+    def goals(self) -> NDArray[np.int32]:
+        """The cells at whose checkpoints they are or will be next, shape (R, P)."""
+        return self._walkers.ends.reshape(self._shape)
+
+    @property
     def idle(self) -> NDArray[np.float64]:
         """Seconds for which each has been held up, shape (R, P)."""
         return self._walkers.idle.reshape(self._shape)
 
     def step(self, time: float, dt: float) -> None:
         """Go on from ``time`` by ``dt``, both in seconds; whoever comes to a checkpoint decides."""
-        walkers, at, velocity = self._walkers, self._world.positions, self._world.velocities
-        walkers.advance(at, velocity, dt)
-        while (done := walkers.done).any():
-            for run in np.flatnonzero(done.reshape(self._shape).any(axis=1)).tolist():
-                self._decide(run, time, done)
-        self._world.step(walkers.wanted(dt), dt)
+        self.advance(dt)
+        while self.waiting.any():
+            for run in np.flatnonzero(self.waiting.any(axis=1)).tolist():
+                self._decide(run, time)
+        self.finish(dt)
+
+    @property
+    def waiting(self) -> NDArray[np.bool_]:
+        """Who has come to a checkpoint and must be sent on before the step can be finished, shape (R, P)."""
+        return self._walkers.done.reshape(self._shape)
+
+    def advance(self, dt: float) -> None:
+        """Begin a step of ``dt`` seconds: go on along the ways to the checkpoints."""
+        self._walkers.advance(self._world.positions, self._world.velocities, dt)
+
+    def finish(self, dt: float) -> None:
+        """Finish the step: the bodies move."""
+        self._move(self._walkers.wanted(dt), dt)
+
+    def _move(self, wanted: NDArray[np.float64], dt: float) -> None:
+        self._world.step(wanted, dt)
         vx, vy = self._world.velocities.T
         course = np.where(np.hypot(vx, vy) > 1e-3, np.arctan2(vy, vx), self.headings.reshape(-1))
         self.headings = course.reshape(self._shape)
@@ -150,28 +170,50 @@ class Teamwork:
             self._rows[cell] = self._capture.row(self._graph, cell)
         return self._rows[cell]
 
-    def _decide(self, run: int, time: float, done: NDArray[np.bool_]) -> None:
+    def state(self, run: int, time: float) -> SearchState:
+        """Return what the policy of a run may know."""
         walkers, first = self._walkers, run * self.team.pursuers
-        mine = range(first, first + self.team.pursuers)
-        aimed, left = walkers.aimed_cells, walkers.time_left
+        done, aimed, left = walkers.done, walkers.aimed_cells, walkers.time_left
         pursuers = tuple(
             PursuerState(int(walkers.ends[k]))
             if done[k]
             else PursuerState(int(aimed[k]), int(walkers.ends[k]), float(left[k]))
-            for k in mine
+            for k in range(first, first + self.team.pursuers)
         )
-        plans = self._plans[run]
-        decisions = self._policies[run].decide(SearchState(time, self.beliefs[run], pursuers, tuple(plans)))
-        for i, (k, decision) in enumerate(zip(mine, decisions, strict=True)):
-            if not done[k]:
-                continue
-            here = int(walkers.ends[k])
-            if decision is None or not decision.path or decision.path[0] not in (here, *self.routes.neighbours[here]):
-                raise GeomsimError(
-                    f"The policy of {type(self.team.planner).__name__} sent pursuer {i + 1} from cell {here + 1} to "
-                    "no neighbour of it; run planners.check_policy on it."
-                )
-            self.choices.append(Choice(time, run, i, tuple(decision.path)))
-            plans[i] = tuple(decision.path[1:])  # the first hop is under way
-            to = decision.path[0]
-            walkers.take(k, self.routes.stay(here, self._stay) if to == here else self.routes.between(here, to))
+        return SearchState(time, self.beliefs[run], pursuers, tuple(self._plans[run]))
+
+    def send(self, run: int, pursuer: int, time: float, path: Sequence[int]) -> None:
+        """Send a pursuer that waits at a checkpoint to a neighbouring cell, or let it stay for a belief step.
+
+        Parameters
+        ----------
+        run, pursuer : int
+            Who, counted from 0.
+        time : float
+            Seconds.
+        path : sequence of int
+            Cells to visit, counted from 0, the next one first; its own cell to stay.
+
+        Raises
+        ------
+        GeomsimError
+            If the path does not begin with a neighbour of the pursuer's cell or that cell.
+        """
+        k = run * self.team.pursuers + pursuer
+        here = int(self._walkers.ends[k])
+        if not path or path[0] not in (here, *self.routes.neighbours[here]):
+            raise GeomsimError(
+                f"The policy of {type(self.team.planner).__name__} sent pursuer {pursuer + 1} from cell {here + 1} to "
+                "no neighbour of it; run planners.check_policy on it."
+            )
+        self.choices.append(Choice(time, run, pursuer, tuple(path)))
+        self._plans[run][pursuer] = tuple(path[1:])  # the first hop is under way
+        to = path[0]
+        self._walkers.take(k, self.routes.stay(here, self._stay) if to == here else self.routes.between(here, to))
+
+    def _decide(self, run: int, time: float) -> None:
+        waiting = self.waiting[run]
+        decisions = self._policies[run].decide(self.state(run, time))
+        for pursuer in np.flatnonzero(waiting).tolist():
+            decision = decisions[pursuer]
+            self.send(run, pursuer, time, () if decision is None else decision.path)
