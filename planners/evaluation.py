@@ -120,6 +120,15 @@ def lower_bounds(
 
     It is what a team would need that always knew the evader's state; see :meth:`JointChain.informed_times`.
 
+    Parameters
+    ----------
+    problem : SearchProblem
+        Graph, motion, capture and team.
+    starts : sequence of sequence of int
+        For each start the cell of every pursuer, counted from 0.
+    belief : ndarray, shape (N + 1,), optional
+        Where the evader is; by default uniform over the cells without a pursuer.
+
     Raises
     ------
     TooLargeError

@@ -16,7 +16,11 @@ __all__ = ["run_app"]
 app = App(
     name="geomsim",
     help="Find somebody who moves about a building, with a team of robots.",
-    help_epilogue="Exit codes: 0 done, 2 bad input, 130 interrupted. --debug shows where an error comes from.",
+    help_epilogue=(
+        "Every command also takes --plugin FILE.py or --plugin MODULE, with planners, heuristics, evader models or "
+        "readers of your own; it may be given several times. "
+        "Exit codes: 0 done, 2 bad input, 130 interrupted. --debug shows where an error comes from."
+    ),
     result_action="return_value",
     suppress_keyboard_interrupt=False,
     version_flags=["--version"],
@@ -46,6 +50,7 @@ def run_app(tokens: Sequence[str]) -> NoReturn:
     try:
         signal.signal(signal.SIGTERM, _interrupt)
         speak_plainly()
+        tokens = _with_plugins(tokens)
         code = app(tokens, exit_on_error=False, print_error=False)
         finish_stdout()
     except Exception as exc:
@@ -56,6 +61,25 @@ def run_app(tokens: Sequence[str]) -> NoReturn:
         complain("Interrupted.")
         code = 130
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _with_plugins(tokens: list[str]) -> list[str]:
+    """Load the plugins that are named and, where there is a command, those installed; return the other tokens."""
+    from geomsim.plugins import PluginError, load_plugins
+
+    named, others, rest = [], [], iter(tokens)
+    for token in rest:
+        flag, equals, value = token.partition("=")
+        if flag != "--plugin":
+            others.append(token)
+            continue
+        value = value if equals else next(rest, "")
+        if not value:
+            raise PluginError("--plugin takes a file that ends in .py or the name of a module.")
+        named.append(value)
+    if others and not others[0].startswith("-"):
+        load_plugins(named)
+    return others
 
 
 def _explain(exc: Exception) -> int:
