@@ -443,3 +443,8 @@ def test_help_tells_defaults(key: str) -> None:
     words |= {"cost": Decoupled().cost, "depth": str(Decoupled().depth)}
     told = words.get(key, f"{default:g}" if isinstance(default, float) else str(default))
     assert doc[: doc.index("]") + 1].endswith(f" [default: {told}]"), doc
+
+
+def test_the_package_runs_as_a_module() -> None:
+    done = subprocess.run([sys.executable, "-m", "geomsim", "maps"], capture_output=True, text=True, check=True)
+    assert "office" in done.stdout
