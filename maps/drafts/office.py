@@ -92,7 +92,7 @@ def _metres(sketched: NDArray[np.float64], hallways: Sequence[tuple[int, int]]) 
     edges = [0.0, *(float(edge) for hallway in hallways for edge in hallway)]
     pieces = [HALLWAY if k % 2 else (b - a) * UNIT for k, (a, b) in enumerate(pairwise(edges))]
     beyond = np.maximum(sketched - edges[-1], 0.0) * UNIT
-    return np.interp(sketched, edges, np.cumsum([0.0, *pieces])) + beyond
+    return np.asarray(np.interp(sketched, edges, np.cumsum([0.0, *pieces])) + beyond)
 
 
 def _row(numbers: Sequence[int], xs: Sequence[float], y0: float, y1: float) -> list[Room]:
