@@ -20,7 +20,7 @@ __all__ = ["discretize"]
 def discretize(
     plan: str,
     *,
-    method: Annotated[str, Parameter(help="How to cut: exact, rooms, quine-mccluskey or visibility.")] = "exact",
+    method: Annotated[str, Parameter(help="How to cut: rooms, exact, quine-mccluskey or visibility.")] = "rooms",
     cells: Annotated[
         Path | None, Parameter(help="Cells that this command wrote and a person may have changed, to be checked.")
     ] = None,
@@ -74,6 +74,7 @@ def _result(cells: CellMap, report: CellReport, certificate: Certificate, second
         "coverage": report.coverage,
         "overlap": report.overlap,
         "convexity": report.convexity,
+        "tolerance": report.tolerance,
         "free_components": report.free_components,
         "graph_components": report.graph_components,
         "pockets": list(report.pockets),
