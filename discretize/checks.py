@@ -130,12 +130,11 @@ def _beyond(cellmap: CellMap, convexity: NDArray[np.float64], ways: Ways) -> tup
 
 
 def _tolerance_note(cellmap: CellMap, beyond: tuple[int, ...]) -> tuple[str, ...]:
-    """Say what was promised of cells that are nearly convex, and which of them break it."""
-    if cellmap.strict or cellmap.tolerance == 1:
+    """Say which cells break the promise that they are nearly convex."""
+    if not beyond or cellmap.strict:
         return ()
-    but = f"; {len(beyond)} of {len(cellmap)} cells miss more: {', '.join(map(str, beyond))}" if beyond else ""
-    told = f"Cells miss at most {cellmap.tolerance:g} of their convex hulls"
-    return (f"{told}, small obstacles and what is too narrow for the body left out{but}.",)
+    numbers = ", ".join(map(str, beyond))
+    return (f"{len(beyond)} of {len(cellmap)} cells miss more than {cellmap.tolerance:g} of their hulls: {numbers}.",)
 
 
 def _shape_problems(cellmap: CellMap, convexity: NDArray[np.float64]) -> list[str]:
