@@ -23,8 +23,9 @@ from maps import FloorPlan, GeomsimError, Label, Repair
 __all__ = ["FORMAT", "RecordError", "read_record", "write_record"]
 
 #: raised by one whenever a reader of the format before would misread a record
-FORMAT = 1
+FORMAT = 2
 _KIND = "geomsim episode"
+_ABOUT_CELLS = ("radius", "method", "names", "tolerance", "strict", "notes")
 
 
 class RecordError(GeomsimError):
@@ -193,7 +194,7 @@ def _pack_cells(cells: CellMap) -> dict[str, NDArray[Any]]:
     legs, splits = _join([leg for portal in cells.portals for leg in portal.legs], np.dtype(np.float64))
     return {
         "cells": _wkb(cells.cells),
-        "cells_about": _text({"radius": cells.radius, "method": cells.method, "names": cells.names}),
+        "cells_about": _text({key: getattr(cells, key) for key in _ABOUT_CELLS}),
         "checkpoints": cells.checkpoints,
         "portal_cells": np.array(cells.edges, dtype=np.int32).reshape(-1, 2),
         "portal_segments": np.array([portal.segment for portal in cells.portals]).reshape(-1, 2, 2),
@@ -222,4 +223,7 @@ def _unpack_cells(arrays: Mapping[str, NDArray[Any]], plan: FloorPlan) -> CellMa
         radius=float(about["radius"]),
         method=about["method"],
         names=tuple(about["names"]),
+        tolerance=float(about["tolerance"]),
+        strict=bool(about["strict"]),
+        notes=tuple(about["notes"]),
     )

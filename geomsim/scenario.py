@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from discretize import CellMap, convex_cells, read_cells
+from discretize import DEFAULT_METHOD, CellMap, convex_cells, read_cells
 from geomsim.evaders import EVADERS, make_evader_model
 from geomsim.pursuit import CAPTURE_RULES, Timing
 from geomsim.sensing import Sensor
@@ -76,7 +76,7 @@ class Scenario(BaseModel):
     evader_radius: _Positive = 0.2
     motion: str = "area-speed-degree"
     motion_speed: _Positive | None = None
-    method: str = "exact"
+    method: str = DEFAULT_METHOD
     cells: str | None = None
     clearance: _Positive | None = None
     time_limit: _Positive = 1800.0

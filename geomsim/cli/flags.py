@@ -113,7 +113,7 @@ class ScenarioFlags(PlanFlags):
     motion_speed
         How fast they believe it to be, metres a second. [default: as fast as it is]
     method
-        How the plan is cut into cells. [default: exact]
+        How the plan is cut into cells. [default: rooms]
     cells
         GeoJSON of cells that `geomsim discretize` wrote and a person may have changed, instead of a method.
     clearance

@@ -99,7 +99,7 @@ def _unreached(episode: Episode) -> list[str]:
 
 def _report(episode: Episode, files: dict[str, Path], *, json: bool) -> None:
     out = episode.outcome
-    notes = [*_unreached(episode), *out.notes]
+    notes = [*episode.cells.notes, *_unreached(episode), *out.notes]
     if json:
         say_json(
             {
