@@ -143,23 +143,26 @@ class Scene {
     }
     if (layers.trails) for (const r of team) this.trail(context, episode.trail(r, where, t, 20), colour(r));
     if (layers.plans && !captured) for (const r of team) this.plan(context, episode.route(r, where, t), r, colour(r));
-    const evader = episode.evader(where);
     if (captured && data.outcome.robot) {
-      this.polyline(context, [episode.position(data.outcome.robot - 1, where), evader]);
+      const last = episode.evader(data.outcome.evader, where);
+      this.polyline(context, [episode.position(data.outcome.robot - 1, where), last]);
       context.strokeStyle = theme.evader;
       context.lineWidth = 2 * unit;
       context.stroke();
     }
-    const bodies = team.map((r) => episode.position(r, where));
-    if (layers.evader || captured) bodies.push(evader); // what is hidden must not push what is shown
-    const places = apart(bodies.map((body) => this.pixel(body)), 19 * unit);
-    if (bodies.length > data.robots) this.evader(context, places[data.robots], captured);
+    const bodies = team.map((r) => episode.position(r, where)), shown = [];
+    for (let k = 0; k < data.evaders; k++) {
+      if (layers.evader || episode.caught(k, t)) shown.push(k); // what is hidden must not push what is shown
+    }
+    const places = apart([...bodies, ...shown.map((k) => episode.evader(k, where))].map((body) => this.pixel(body)), 19 * unit);
+    shown.forEach((k, n) => this.evader(context, places[data.robots + n], episode.caught(k, t), data.evaders > 1 ? `E${k + 1}` : "E"));
     const last = captured && data.outcome.robot ? data.outcome.robot - 1 : data.robots - 1;
     for (const r of [...team.filter((r) => r !== last), last]) this.robot(context, r, places[r], episode.heading(r, where), colour(r));
   }
 
   sight(context, robot, where, colour) {
-    const { range, field, byCell } = this.episode.data.sight, eye = this.episode.position(robot, where);
+    const { eyes, byCell } = this.episode.data.sight, { range, field } = eyes[robot];
+    const eye = this.episode.position(robot, where);
     context.save();
     context.globalAlpha = 0.38;
     context.fillStyle = colour;
@@ -223,7 +226,7 @@ class Scene {
     this.text(context, `${number + 1}`, [x, y], 12.5, theme.label, 700);
   }
 
-  evader(context, [x, y], captured) {
+  evader(context, [x, y], captured, name) {
     const { unit, theme } = this, radius = 12 * unit;
     if (captured) {
       context.beginPath();
@@ -239,7 +242,7 @@ class Scene {
       for (const [dx, dy] of [[1, 0], [0, 1], [-1, 0], [0, -1]]) context.lineTo(x + reach * dx, y + reach * dy);
       context.fill();
     }
-    this.text(context, "E", [x, y], 11.5, theme.label, 700);
+    this.text(context, name, [x, y], 11.5, theme.label, 700);
   }
 }
 
