@@ -67,6 +67,12 @@ class CellMap:
         Name of the discretiser.
     names : tuple of str
         One for each cell, empty where the source has none.
+    tolerance : float
+        Share of its convex hull that a cell may lack by the promise of its method.
+    strict : bool
+        Whether a cell that lacks more is a problem, and not only to be told.
+    notes : tuple of str
+        What the method did otherwise than usual, a sentence each.
     """
 
     plan: FloorPlan
@@ -76,6 +82,9 @@ class CellMap:
     radius: float
     method: str
     names: tuple[str, ...]
+    tolerance: float = 1.0
+    strict: bool = False
+    notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.cells)

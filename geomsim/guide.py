@@ -24,20 +24,18 @@ import shapely
 from numpy.typing import NDArray
 
 from discretize import CellMap
-from geomsim.pursuit import Timing, believed_capture
+from geomsim.believing import believed_problem
 from geomsim.seeds import Streams
 from geomsim.team import Team, place_team
 from geomsim.walking import Routes
 from maps import GeomsimError
 from planners import (
     AreaSpeedDegree,
+    LineOfSight,
     MotionModel,
     PursuerState,
-    SearchGraph,
-    SearchProblem,
     SearchState,
     advance,
-    uniform_belief,
 )
 
 __all__ = ["Guide", "GuideError", "Order", "Orders", "Report"]
@@ -78,9 +76,10 @@ class Order:
     robot : int
         Who, counted from 0.
     cell : int
-        The cell to whose checkpoint it goes, counted from 0; its own if it is to stay there.
+        The cell to whose checkpoint it goes, counted from 0; its own if it is to stay there. Of a team that decides at
+        boundaries too, numbers beyond the cells are their checkpoints.
     path : tuple of int
-        The cells that it is meant to visit, that one first; a plan that may change.
+        Those that it is meant to visit, that one first; a plan that may change.
     way : ndarray, shape (k, 2)
         A polyline from where it is to the checkpoint, free of walls, metres.
     given : float
@@ -151,7 +150,8 @@ class Guide:
     cells : CellMap
         The building.
     team : Team, optional
-        Size, planner, start cells, speed and sensor; the belief begins without the cells in which the robots start.
+        As for :func:`geomsim.run_episode`; one planner plans for all, whoever hears whom. The belief begins without the
+        cells in which the robots start.
     seed : int
         The planner's chance; the same messages and the same seed give the same orders.
     motion : MotionModel, optional
@@ -192,17 +192,14 @@ class Guide:
         self.cells, self.team = cells, team or Team()
         self.belief_step, self.arrival = belief_step, arrival
         self.patience, self.memory, self.leeway = patience, memory, leeway
-        capture = believed_capture(self.team, Timing(belief_step=belief_step, physics_step=belief_step))
-        self._graph, self._routes = SearchGraph.from_cells(cells), Routes(cells)
         starts = place_team(cells, self.team)
-        believed = motion or AreaSpeedDegree(1.0)
-        self._transition = believed.matrix(self._graph, belief_step)
-        self._rows = capture.table(self._graph)
-        problem = SearchProblem(self._graph, believed, capture, (self.team.speed,) * len(starts), belief_step)
-        self._policy = self.team.planner.solve(problem, Streams(seed).deciding)
-        part = int(self._graph.component[starts[0]])
+        roads, self._problem = believed_problem(cells, self.team, motion or AreaSpeedDegree(1.0), belief_step)
+        self._graph, self._routes = roads.graph, Routes(roads)
+        self._transition = self._problem.motion.matrix(self._graph, belief_step)
+        self._rows: dict[tuple[int, int], NDArray[np.float64]] = {}
+        self._policy = self.team.planner.solve(self._problem, Streams(seed).deciding)
         # the belief after each step, as far back as late messages may change it, and who looked from where in it
-        self._beliefs = {0: uniform_belief(self._graph, exclude=starts, component=part)}
+        self._beliefs = {0: self._problem.first_belief(starts, int(self._graph.component[starts[0]]))}
         self._looks: dict[int, dict[int, tuple[float, int]]] = {}
         self._robots = [self._placed(k, cell) for k, cell in enumerate(starts)]
         self._began: float | None = None
@@ -212,7 +209,7 @@ class Guide:
     @property
     def belief(self) -> NDArray[np.float64]:
         """What the team believes now, shape (N + 1,); index 0 is the capture state."""
-        return self._beliefs[max(self._beliefs)]
+        return self._problem.states.gather(self._beliefs[max(self._beliefs)])
 
     def step(self, now: float, reports: Iterable[Report] = ()) -> Orders:
         """Take in messages, let time pass up to ``now``, and say what each robot is to do.
@@ -292,14 +289,16 @@ class Guide:
         before = looks.get(report.robot)
         if before is not None and before[0] >= report.time:
             return unchanged
-        looks[report.robot] = report.time, cell
-        return step if before is None or before[1] != cell else unchanged
+        view = self._view(report.robot, position, cell)
+        looks[report.robot] = report.time, view
+        return step if before is None or before[1] != view else unchanged
 
     def _believe(self, changed: int) -> None:
         """Take all belief steps up to now, anew from the first one that a message changed; forget what is too old."""
         for step in range(min(changed, max(self._beliefs) + 1), self._steps + 1):
-            cells = [cell for _, cell in self._looks.get(step, {}).values()]
-            rows = self._rows[cells].toarray() if cells else np.zeros((0, len(self._graph)))
+            looks = {who: view for who, (_, view) in self._looks.get(step, {}).items()}
+            rows = np.array([self._row(who, view) for who, view in sorted(looks.items())])
+            rows = rows.reshape(len(looks), len(self._beliefs[step - 1]) - 1)
             self._beliefs[step] = advance(self._beliefs[step - 1], self._transition, rows)
         oldest = self._steps - math.ceil(self.memory / self.belief_step)
         for step in [step for step in self._beliefs if step < oldest]:
@@ -317,7 +316,7 @@ class Guide:
         if arrived:
             states = tuple(self._state(robot, stands=k in arrived) for k, robot in enumerate(self._robots))
             plans = tuple(() if self._is_silent(robot) else robot.plan for robot in self._robots)
-            decisions = self._policy.decide(SearchState(self._now, self.belief, states, plans))
+            decisions = self._policy.decide(SearchState(self._now, self._beliefs[max(self._beliefs)], states, plans))
             for k in arrived:
                 decision, cell = decisions[k], self._robots[k].order.cell
                 if decision is None or not decision.path or not self._can_go(cell, decision.path[0]):
@@ -354,11 +353,30 @@ class Guide:
         """Return the time on the robots' clock."""
         return (self._began or 0.0) + self._now
 
+    def _view(self, k: int, position: NDArray[np.float64], cell: int) -> int:
+        """Return the viewpoint that a robot looks from, as its capture model counts them."""
+        capture, robot = self._problem.captures[k], self._robots[k]
+        if not isinstance(capture, LineOfSight):
+            return cell
+        if robot.origin == robot.order.cell:
+            return robot.order.cell
+        edge = self._graph.edge(robot.origin, robot.order.cell)
+        way = float(self._graph.length[edge]) - _way_left(robot.order.way, position)
+        return int(capture.viewpoints(self._graph, edge, np.array([max(0.0, way)]))[0])
+
+    def _row(self, k: int, view: int) -> NDArray[np.float64]:
+        """Return the detection probability of each state for a robot at a viewpoint, shape (S,)."""
+        if (k, view) not in self._rows:
+            capture = self._problem.captures[k]
+            seen = capture.table(self._graph)[[view]].toarray()[0] if isinstance(capture, LineOfSight) else None
+            self._rows[k, view] = capture.row(self._graph, view) if seen is None else seen
+        return self._rows[k, view]
+
     def _send_home(self, k: int) -> None:
         """Send a robot to the checkpoint of the cell that it is in."""
         robot = self._robots[k]
         way = np.stack([robot.position, self._routes.checkpoint(robot.cell)])
-        lasts = float(np.hypot(*(way[1] - way[0]))) / self.team.speed
+        lasts = float(np.hypot(*(way[1] - way[0]))) / self.team.speeds[k]
         robot.order = Order(k, robot.cell, (robot.cell,), way, self._clock, self._clock + lasts)
         robot.origin, robot.plan = robot.cell, ()
 
@@ -367,7 +385,7 @@ class Guide:
         stays = path[0] == cell
         here = self._routes.checkpoint(cell)
         way = np.stack([here, here]) if stays else self._routes.between(cell, path[0]).points
-        lasts = self.belief_step if stays else self._routes.between(cell, path[0]).length / self.team.speed
+        lasts = self.belief_step if stays else self._routes.between(cell, path[0]).length / self.team.speeds[k]
         robot.order = Order(k, path[0], path, way, self._clock, self._clock + lasts)
         robot.origin, robot.plan = cell, path[1:]
 
@@ -376,7 +394,7 @@ class Guide:
         order = robot.order
         if stands:
             return PursuerState(order.cell)
-        left = _way_left(order.way, robot.position) / self.team.speed
+        left = _way_left(order.way, robot.position) / self.team.speeds[order.robot]
         if robot.is_waiting:
             left = max(left, order.due - self._clock)
         cell = robot.cell if robot.cell in (robot.origin, order.cell) else robot.origin
@@ -385,10 +403,11 @@ class Guide:
     def _locate(self, position: NDArray[np.float64]) -> int:
         """Return the cell that a position is in; of one in a wall, the nearest cell that a robot can enter."""
         cell = int(self.cells.locate(position[np.newaxis])[0])
-        if cell >= 0 and self._graph.component[cell] >= 0:
+        enterable = self.cells.components >= 0
+        if cell >= 0 and enterable[cell]:
             return cell
         gaps = shapely.distance(np.array(self.cells.cells, dtype=object), shapely.Point(position))
-        return int(np.argmin(np.where(self._graph.component >= 0, gaps, np.inf)))
+        return int(np.argmin(np.where(enterable, gaps, np.inf)))
 
 
 def _way_left(way: NDArray[np.float64], position: NDArray[np.float64]) -> float:

@@ -13,11 +13,12 @@ import yaml
 
 from discretize import CellMap
 from geomsim.episode import Episode
-from geomsim.pursuit import Timing, believed_capture, check_clocks, check_pursuit
+from geomsim.pursuit import Timing, check_clocks, check_pursuit
 from geomsim.seeds import Streams
 from geomsim.team import Evader, Team, place_team
 from geomsim.teamwork import Teamwork
 from geomsim.walking import Route, Routes
+from maps import GeomsimError
 from planners import AreaSpeedDegree, MotionModel
 
 __all__ = ["Waypoint", "nav2_text", "plan_waypoints", "record_waypoints", "waypoints_text"]
@@ -93,35 +94,32 @@ def plan_waypoints(
     """
     team, told = team or Team(), timing or Timing()
     clocks = Timing(duration, told.belief_step, told.physics_step)
-    check_pursuit(cells, team, Evader(speed=team.speed, radius=team.radius), "cell")
-    check_clocks(cells, team, Evader(speed=team.speed, radius=team.radius), clocks)
+    like_us = Evader(speed=team.speeds[0], radius=team.radius)
+    check_pursuit(cells, team, like_us, "cell")
+    check_clocks(cells, team, like_us, clocks)
+    _check_checkpoints(team.checkpoints)
     starts, dt = place_team(cells, team), clocks.physics_step
-    work = Teamwork(
-        cells,
-        team,
-        starts,
-        motion or AreaSpeedDegree(1.0),
-        believed_capture(team, clocks),
-        clocks.belief_step,
-        [Streams(seed).deciding],
-    )
+    believed = motion or AreaSpeedDegree(1.0)
+    work = Teamwork(cells, team, starts, believed, clocks.belief_step, [Streams(seed).deciding])
     for k in range(clocks.steps):
         work.step(k * dt, dt)
         if (k + 1) % clocks.steps_per_belief == 0:
             work.learn()
     decisions = [(choice.time, choice.pursuer, choice.path[0]) for choice in work.choices]
-    return _follow(work.routes, starts, decisions, team.speed, clocks)
+    return _follow(work.routes, starts, decisions, team.speeds, clocks)
 
 
 def record_waypoints(episode: Episode) -> tuple[tuple[Waypoint, ...], ...]:
     """Return where the robots of a recorded pursuit were sent, up to its end; one row for each robot."""
     told = episode.scenario
+    _check_checkpoints(told.get("checkpoints", "centroids"))
     decided = zip(episode.decision_times, episode.decision_pursuers, episode.decision_paths, strict=True)
     decisions = [(float(time), int(who), int(path[0])) for time, who, path in decided]
     starts = episode.pursuer_cells[0].tolist()
     end = max(episode.outcome.time, told["physics_step"])
     timing = Timing(end, told["belief_step"], told["physics_step"])
-    return _follow(Routes(episode.cells), starts, decisions, told["speed"], timing)
+    speeds = told["speed"] if isinstance(told["speed"], list | tuple) else [told["speed"]] * len(starts)
+    return _follow(Routes(episode.cells), starts, decisions, speeds, timing)
 
 
 def waypoints_text(rows: Iterable[Sequence[Waypoint]]) -> str:
@@ -172,14 +170,14 @@ def _follow(
     routes: Routes,
     starts: Sequence[int],
     decisions: Iterable[tuple[float, int, int]],
-    speed: float,
+    speeds: Sequence[float],
     timing: Timing,
 ) -> tuple[tuple[Waypoint, ...], ...]:
     """Turn decisions (time, robot, next cell), in order of time, into waypoints up to the time limit."""
     here, heading, free = list(starts), [0.0] * len(starts), [timing.physics_step] * len(starts)
     rows: list[list[Waypoint]] = [[] for _ in starts]
     for time, who, to in decisions:
-        at = here[who]
+        at, speed = here[who], speeds[who]
         stay = to == at
         route = routes.stay(at, speed * timing.belief_step) if stay else routes.between(at, to)
         # a robot decides a step before it comes to the checkpoint; later only if it was held up on its way
@@ -197,6 +195,11 @@ def _follow(
             rows[who].append(Waypoint(who, float(times[k]), x, y, headings[k], cell, k in (0, last_point)))
         here[who], heading[who], free[who] = to, headings[-1], begin + route.length / speed
     return tuple(tuple(w for w in row if w.time <= timing.limit + 1e-9) for row in rows)
+
+
+def _check_checkpoints(kind: str) -> None:
+    if kind != "centroids":
+        raise GeomsimError(f"Waypoints are made of teams that decide at centroids, not at {kind}.")
 
 
 def _headings(route: Route, before: float) -> list[float]:

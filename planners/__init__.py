@@ -33,13 +33,18 @@ from planners.motion import (
     check_transition,
     fit_motion,
 )
+from planners.parts import MotionInParts, cut_cells
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
 from planners.registry import PLANNERS, PlannerEntry, make_planner, parse_method, register_planner
+from planners.roads import CHECKPOINTS, Roads
 from planners.rollout import Rollout
+from planners.sight import LineOfSight, OwnCell, SightMap
+from planners.space import StateSpace
 from planners.team import PlannerError
 from planners.walks import TooLargeError
 
 __all__ = [
+    "CHECKPOINTS",
     "COSTS",
     "PLANNERS",
     "AreaSpeedDegree",
@@ -59,8 +64,11 @@ __all__ = [
     "GivenMotion",
     "GraphError",
     "Hops",
+    "LineOfSight",
     "MotionError",
+    "MotionInParts",
     "MotionModel",
+    "OwnCell",
     "Planner",
     "PlannerEntry",
     "PlannerError",
@@ -68,12 +76,15 @@ __all__ = [
     "Prediction",
     "PursuerState",
     "Random",
+    "Roads",
     "Rollout",
     "SameCell",
     "SearchGraph",
     "SearchProblem",
     "SearchState",
     "Sequential",
+    "SightMap",
+    "StateSpace",
     "Stationary",
     "StationaryMotion",
     "TooLargeError",
@@ -82,6 +93,7 @@ __all__ = [
     "check_cost",
     "check_policy",
     "check_transition",
+    "cut_cells",
     "elsewhere",
     "find_cost",
     "fit_motion",

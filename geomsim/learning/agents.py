@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,7 +22,7 @@ class PlannerAgents:
     Parameters
     ----------
     env : PursuitEnv or CentralEnv
-        Its chase is asked for the state; whoever learns has the same in observations.
+        Its hunt is asked for the state; whoever learns has the same in observations.
     planner : Planner
         What decides.
 
@@ -35,7 +33,7 @@ class PlannerAgents:
     """
 
     def __init__(self, env: PursuitEnv | CentralEnv, planner: Planner) -> None:
-        self._chase, self._planner = env.chase, planner
+        self._chase, self._planner = env.hunt, planner
         if self._chase.control != "checkpoint":
             raise GeomsimError("Planners choose checkpoints; make the environment with control='checkpoint'.")
         self._policy: Policy | None = None
@@ -43,16 +41,16 @@ class PlannerAgents:
 
     def act(self) -> NDArray[np.int64]:
         """Return an action for each robot, shape (P,), 0 for those on their way."""
-        chase = self._chase
-        if self._policy is None or not chase.work.choices:  # a new pursuit
-            self._policy = self._planner.solve(chase.problem, Streams(chase.seed).deciding)
-            self._plans = [()] * chase.team.pursuers
-        decisions = self._policy.decide(replace(chase.state, plans=tuple(self._plans)))
-        actions = np.zeros(chase.team.pursuers, dtype=np.int64)
-        for robot in np.flatnonzero(chase.waiting).tolist():
+        hunt = self._chase
+        if self._policy is None or not hunt.work.choices:  # a new pursuit
+            self._policy = self._planner.solve(hunt.problem, Streams(hunt.seed).deciding)
+            self._plans = [()] * hunt.team.pursuers
+        decisions = self._policy.decide(hunt.state(self._plans))
+        actions = np.zeros(hunt.team.pursuers, dtype=np.int64)
+        for robot in np.flatnonzero(hunt.waiting).tolist():
             decision = decisions[robot]
             if decision is not None:
-                actions[robot] = chase.choices(robot).index(decision.path[0])
+                actions[robot] = hunt.choices(robot).index(decision.path[0])
                 self._plans[robot] = tuple(decision.path[1:])
         return actions
 

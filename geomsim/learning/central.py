@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from geomsim.learning.chase import Chase
+from geomsim.learning.hunt import Hunt
 from geomsim.learning.parallel import RENDER_MODES, check_options
 from geomsim.learning.pictures import frame
 from geomsim.learning.views import Views
@@ -45,9 +45,9 @@ class CentralEnv(gymnasium.Env[dict[str, NDArray[Any]], NDArray[Any]]):
     def __init__(self, control: str = "checkpoint", render_mode: str | None = None, **keys: Any) -> None:
         check_options(control, render_mode)
         self.render_mode = render_mode
-        self.chase = Chase(read_scenario(None, keys), control)
-        self._views = Views(self.chase)
-        robots = self.chase.team.pursuers
+        self.hunt = Hunt(read_scenario(None, keys), control)
+        self._views = Views(self.hunt)
+        robots = self.hunt.team.pursuers
         self.observation_space = self._views.all_space()
         self.action_space = (
             spaces.Box(-1.0, 1.0, (robots, 2), np.float32)
@@ -60,16 +60,16 @@ class CentralEnv(gymnasium.Env[dict[str, NDArray[Any]], NDArray[Any]]):
     ) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
         """Begin anew: with the pursuit that :func:`geomsim.run_episode` runs of this seed, or the next of many."""
         super().reset(seed=seed, options=options)
-        self.chase.begin(int(self.np_random.integers(2**31)) if seed is None else seed)
-        return self._views.all(), self.chase.told()
+        self.hunt.begin(int(self.np_random.integers(2**31)) if seed is None else seed)
+        return self._views.all(), self.hunt.told()
 
     def step(self, action: NDArray[Any]) -> tuple[dict[str, NDArray[Any]], float, bool, bool, dict[str, Any]]:
         """Let the robots go on."""
-        before = self.chase.time
+        before = self.hunt.time
         self._views.act(dict(enumerate(action)))
-        captured, over = self.chase.captor is not None, self.chase.over
-        return self._views.all(), before - self.chase.time, captured, over and not captured, self.chase.told()
+        captured, over = self.hunt.captured, self.hunt.over
+        return self._views.all(), before - self.hunt.time, captured, over and not captured, self.hunt.told()
 
     def render(self) -> NDArray[np.uint8] | None:
         """Draw this moment, shape (height, width, 3), red first; None without a render mode."""
-        return None if self.render_mode is None else frame(self.chase)
+        return None if self.render_mode is None else frame(self.hunt)

@@ -11,7 +11,7 @@ from gymnasium.utils import seeding
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
-from geomsim.learning.chase import CONTROLS, Chase
+from geomsim.learning.hunt import CONTROLS, Hunt
 from geomsim.learning.pictures import frame
 from geomsim.learning.views import Views
 from geomsim.scenario import read_scenario
@@ -70,10 +70,10 @@ class PursuitEnv(ParallelEnv[str, dict[str, NDArray[Any]], Any]):
     def __init__(self, control: str = "checkpoint", render_mode: str | None = None, **keys: Any) -> None:
         check_options(control, render_mode)
         self.render_mode = render_mode
-        self.chase = Chase(read_scenario(None, keys), control)
-        self._views = Views(self.chase)
+        self.hunt = Hunt(read_scenario(None, keys), control)
+        self._views = Views(self.hunt)
         self._chance, _ = seeding.np_random(keys.get("seed"))
-        self.possible_agents = [f"robot_{k + 1}" for k in range(self.chase.team.pursuers)]
+        self.possible_agents = [f"robot_{k + 1}" for k in range(self.hunt.team.pursuers)]
         self.agents: list[str] = []
         self._spaces = cache(self._space)
 
@@ -93,9 +93,9 @@ class PursuitEnv(ParallelEnv[str, dict[str, NDArray[Any]], Any]):
         """Begin anew: with the pursuit that :func:`geomsim.run_episode` runs of this seed, or the next of many."""
         if seed is not None:
             self._chance, _ = seeding.np_random(seed)
-        self.chase.begin(int(self._chance.integers(2**31)) if seed is None else seed)
+        self.hunt.begin(int(self._chance.integers(2**31)) if seed is None else seed)
         self.agents = list(self.possible_agents)
-        return self._observed(self.agents), {agent: self.chase.told() for agent in self.agents}
+        return self._observed(self.agents), {agent: self.hunt.told() for agent in self.agents}
 
     def step(
         self, actions: dict[str, Any]
@@ -107,22 +107,22 @@ class PursuitEnv(ParallelEnv[str, dict[str, NDArray[Any]], Any]):
         dict[str, dict[str, Any]],
     ]:
         """Let the robots go on."""
-        before, agents = self.chase.time, self.agents
+        before, agents = self.hunt.time, self.agents
         self._views.act({self.possible_agents.index(agent): action for agent, action in actions.items()})
-        captured, over = self.chase.captor is not None, self.chase.over
+        captured, over = self.hunt.captured, self.hunt.over
         if over:
             self.agents = []
         return (
             self._observed(agents),
-            dict.fromkeys(agents, before - self.chase.time),
+            dict.fromkeys(agents, before - self.hunt.time),
             dict.fromkeys(agents, captured),
             dict.fromkeys(agents, over and not captured),
-            {agent: self.chase.told() for agent in agents},
+            {agent: self.hunt.told() for agent in agents},
         )
 
     def render(self) -> NDArray[np.uint8] | None:
         """Draw this moment, shape (height, width, 3), red first; None without a render mode."""
-        return None if self.render_mode is None else frame(self.chase)
+        return None if self.render_mode is None else frame(self.hunt)
 
     def close(self) -> None:
         """Leave nothing behind: nothing is held."""
@@ -132,7 +132,7 @@ class PursuitEnv(ParallelEnv[str, dict[str, NDArray[Any]], Any]):
             raise GeomsimError(f"There is no agent {agent!r}; {nearest(agent, self.possible_agents)}")
         if kind == "observation":
             return self._views.own_space()
-        if self.chase.control == "velocity":
+        if self.hunt.control == "velocity":
             return spaces.Box(-1.0, 1.0, (2,), np.float32)
         return spaces.Discrete(self._views.options)
 

@@ -64,8 +64,8 @@ def test_planners_capture_when_they_do_in_an_episode(house: CellMap, planner, ca
     assert infos["robot_2"]["captured_by"] == episode.outcome.pursuer
     assert (terminated["robot_1"], truncated["robot_1"]) == (episode.outcome.captured, not episode.outcome.captured)
     assert total == pytest.approx(-episode.outcome.time)
-    assert np.array_equal(parallel.chase.episode().evader, episode.evader)
-    assert np.array_equal(parallel.chase.episode().pursuers, episode.pursuers)
+    assert np.array_equal(parallel.hunt.episode().evader, episode.evader)
+    assert np.array_equal(parallel.hunt.episode().pursuers, episode.pursuers)
 
     central = CentralEnv(**keys)
     central.reset(seed=seed)
@@ -104,16 +104,16 @@ def test_gymnasium_runs_several_at_once() -> None:
 def test_observations_are_of_what_happens() -> None:
     env = PursuitEnv(plan="house", pursuers=3, start=(1, 4, 7))
     seen, _ = env.reset(seed=3)
-    places = env.chase.work.positions[0]
+    places = env.hunt.work.positions[0]
     for k, agent in enumerate(env.agents):
         view = seen[agent]
         assert env.observation_space(agent).contains(view)
         assert view["places"][0] == pytest.approx(places[k], abs=1e-5)
         assert view["cells"][0] == (0, 3, 6)[k]
         assert view["seen"][view["cells"][0]] == 1
-        assert 0 < view["seen"].sum() < len(env.chase.cells)
+        assert 0 < view["seen"].sum() < len(env.hunt.cells)
         assert view["belief"].sum() == pytest.approx(1, abs=1e-5)
-        assert view["action_mask"].sum() == 1 + len(env.chase.work.routes.neighbours[view["cells"][0]])
+        assert view["action_mask"].sum() == 1 + len(env.hunt.work.routes.neighbours[view["cells"][0]])
 
 
 def test_a_robot_on_its_way_has_no_choice_and_is_not_turned_round() -> None:
@@ -121,21 +121,21 @@ def test_a_robot_on_its_way_has_no_choice_and_is_not_turned_round() -> None:
     env.reset(seed=3)
     seen, _, _, _, _ = env.step({"robot_1": 0, "robot_2": 1})
     assert seen["robot_2"]["action_mask"].tolist()[:2] == [1, 0]
-    goal = env.chase.work.goals[0, 1]
+    goal = env.hunt.work.goals[0, 1]
     env.step({"robot_1": 0, "robot_2": 2})
-    assert env.chase.work.goals[0, 1] == goal
+    assert env.hunt.work.goals[0, 1] == goal
 
 
 def test_velocities_move_robots_and_walls_stop_them() -> None:
     env = PursuitEnv("velocity", plan="house", pursuers=1, start=(1,), evader="still", evader_start=5, capture="cell")
     env.reset(seed=1)
-    before = env.chase.work.positions[0, 0]
+    before = env.hunt.work.positions[0, 0]
     env.step({"robot_1": np.array([0.3, -0.4], np.float32)})
-    assert env.chase.work.positions[0, 0] - before == pytest.approx([0.3, -0.4], abs=0.06)
+    assert env.hunt.work.positions[0, 0] - before == pytest.approx([0.3, -0.4], abs=0.06)
     for _ in range(12):
         env.step({"robot_1": np.array([1.0, 1.0], np.float32)})
-    assert env.chase.cells.plan.space.contains(shapely.Point(env.chase.work.positions[0, 0]))
-    moved = np.hypot(*np.diff(env.chase.episode().pursuers[:, 0], axis=0).T)
+    assert env.hunt.cells.plan.space.contains(shapely.Point(env.hunt.work.positions[0, 0]))
+    moved = np.hypot(*np.diff(env.hunt.episode().pursuers[:, 0], axis=0).T)
     assert moved.max() <= 0.1 + 1e-9
 
 
