@@ -298,6 +298,20 @@ def test_a_scenario_may_begin_with_a_byte_order_mark(call) -> None:
     assert (code, err) == (0, "")
 
 
+@pytest.mark.parametrize("command", ["--help", "run --help", "--version"])
+def test_help_may_be_cut_off(command: str, tmp_path: Path) -> None:
+    python = f"{shlex.quote(sys.executable)} -c 'from geomsim.cli import main; main()' {command}"
+    done = subprocess.run(
+        ["bash", "-c", f"set -o pipefail; {python} | head -c 0"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 @pytest.mark.parametrize("text", ["a = " + "[" * 20_000, "seed = " + "1" * 5000, "seed = 1\nseed = 2", "plan = 'hou"])
 def test_what_is_no_toml_is_refused(call, text: str) -> None:
     Path("s.toml").write_text(text)

@@ -53,6 +53,8 @@ def run_app(tokens: Sequence[str]) -> NoReturn:
         tokens = _with_plugins(tokens)
         code = app(tokens, exit_on_error=False, print_error=False)
         finish_stdout()
+    except SystemExit as exc:  # Rich's, where the reader of the help has seen enough, like `head`
+        code = 0 if isinstance(exc.__context__, BrokenPipeError) else exc.code
     except Exception as exc:
         if debug:
             raise
