@@ -9,7 +9,7 @@ given to the command line with ``--plugin``.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Sequence
 from importlib import import_module
 from importlib.metadata import entry_points
 from importlib.util import module_from_spec, spec_from_file_location
@@ -26,12 +26,12 @@ class PluginError(GeomsimError):
     """A plugin that cannot be found or imported; the message names it."""
 
 
-def load_plugins(named: Iterable[str] = (), *, installed: bool = True) -> None:
+def load_plugins(named: Sequence[str] = (), *, installed: bool = True) -> None:
     """Load plugins; those that are loaded already stay as they are.
 
     Parameters
     ----------
-    named : iterable of str
+    named : sequence of str
         Files that end in ``.py``, or names of modules.
     installed : bool
         Whether to load what installed packages bring, too.
@@ -42,6 +42,8 @@ def load_plugins(named: Iterable[str] = (), *, installed: bool = True) -> None:
         If one is not found or cannot be imported, for whatever reason.
     """
     brought = [(entry.name, entry.module) for entry in entry_points(group=GROUP)] if installed else []
+    if "" in named:
+        raise PluginError("A plugin is a file that ends in .py or the name of a module; got none.")
     for name, module in [*brought, *((name, name) for name in named)]:
         try:
             if module.endswith(".py"):

@@ -298,7 +298,23 @@ def test_a_scenario_may_begin_with_a_byte_order_mark(call) -> None:
     assert (code, err) == (0, "")
 
 
-@pytest.mark.parametrize("command", ["--help", "run --help", "--version"])
+def test_help_waits_for_no_library() -> None:
+    """What takes long to load is loaded by the command that needs it; so ``geomsim --help`` is there at once."""
+    code = "import sys; from geomsim.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n"
+    code += (
+        "print(sorted({m.partition('.')[0] for m in sys.modules} & set('numpy cv2 shapely maps scipy numba'.split())))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert done.stdout.endswith("\n[]\n")
+
+
+@pytest.mark.parametrize("command", ["--help", "run --help"])
 def test_help_may_be_cut_off(command: str, tmp_path: Path) -> None:
     python = f"{shlex.quote(sys.executable)} -c 'from geomsim.cli import main; main()' {command}"
     done = subprocess.run(

@@ -67,8 +67,6 @@ def run_app(tokens: Sequence[str]) -> NoReturn:
 
 def _with_plugins(tokens: list[str]) -> list[str]:
     """Load the plugins that are named and, where there is a command, those installed; return the other tokens."""
-    from geomsim.plugins import PluginError, load_plugins
-
     named, others, rest = [], [], iter(tokens)
     for token in rest:
         flag, equals, value = token.partition("=")
@@ -76,10 +74,10 @@ def _with_plugins(tokens: list[str]) -> list[str]:
             others.append(token)
             continue
         value = value if equals else next(rest, "")
-        if not value:
-            raise PluginError("--plugin takes a file that ends in .py or the name of a module.")
         named.append(value)
-    if others and not others[0].startswith("-"):
+    if others and not others[0].startswith("-") and "--help" not in others:
+        from geomsim.plugins import load_plugins
+
         load_plugins(named)
     return others
 
