@@ -7,6 +7,7 @@ import json
 import zipfile
 import zlib
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ import shapely
 from numpy.typing import NDArray
 
 from discretize import CellMap, Portal
-from geomsim.episode import Episode, Outcome, Status
+from geomsim.episode import Capture, Episode, Outcome, Status
 from geomsim.files import replacing
 from geomsim.recordchecks import PLAIN, check_shapes, check_types, check_values
 from maps import FloorPlan, GeomsimError, Label, Repair
@@ -23,7 +24,7 @@ from maps import FloorPlan, GeomsimError, Label, Repair
 __all__ = ["FORMAT", "RecordError", "read_record", "write_record"]
 
 #: raised by one whenever a reader of the format before would misread a record
-FORMAT = 1
+FORMAT = 2
 _KIND = "geomsim episode"
 
 
@@ -62,6 +63,8 @@ def write_record(episode: Episode, path: Path) -> Path:
             "cell": outcome.cell,
             "predicted": outcome.predicted,
             "notes": outcome.notes,
+            "evader": outcome.evader,
+            "earlier": [asdict(capture) for capture in outcome.earlier],
         },
     }
     arrays["meta"] = _text(meta)
@@ -124,6 +127,8 @@ def _episode(arrays: Mapping[str, NDArray[Any]], meta: dict[str, Any]) -> Episod
         cell=told["cell"],
         predicted=float(told["predicted"]),
         notes=tuple(told["notes"]),
+        evader=int(told["evader"]),
+        earlier=tuple(_capture(**capture) for capture in told["earlier"]),
     )
     return Episode(
         scenario=meta["scenario"],
@@ -133,6 +138,10 @@ def _episode(arrays: Mapping[str, NDArray[Any]], meta: dict[str, Any]) -> Episod
         outcome=outcome,
         **{name: arrays[name] for name in PLAIN},
     )
+
+
+def _capture(evader: int, time: float, pursuer: int, position: Sequence[float], cell: int) -> Capture:
+    return Capture(int(evader), float(time), int(pursuer), (float(position[0]), float(position[1])), int(cell))
 
 
 def _text(value: object) -> NDArray[np.str_]:

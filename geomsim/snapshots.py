@@ -147,9 +147,9 @@ def _draw_sheet(
         told = f"t = {time:.1f} s"
         by = episode.outcome.pursuer
         if moment.captured and by is not None:
-            figures.spotting(part, moment.pursuers[by], moment.evader)
+            figures.spotting(part, moment.pursuers[by], moment.evaders[episode.outcome.evader])
             told += f" · captured by P{by + 1}"
-        figures.evader(part, moment.evader, captured=moment.captured)
+        figures.evaders(part, moment, hidden=False)
         figures.robots(part, moment.pursuers, moment.headings, prefix="P", last=-1 if by is None else by)
         at = (left + panel.width / 2, top + panel.height + 12 * unit)
         sheet.text(told, at, 13 * unit, colours.text, "centre")

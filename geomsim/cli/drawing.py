@@ -54,6 +54,9 @@ class DrawFlags:
         light or dark.
     hide_evader
         Do not show the evader before it is captured.
+    belief_of
+        Number of the robot whose own belief the video shows, where every robot plans for itself. [default: what all
+        robots have seen]
     """
 
     video: bool = True
@@ -69,6 +72,7 @@ class DrawFlags:
     size: str | None = None
     theme: str = "light"
     hide_evader: bool = False
+    belief_of: int | None = None
 
     def check(self) -> None:
         """Refuse what cannot be drawn, before hours are spent on what there is to draw."""
@@ -121,7 +125,7 @@ class DrawFlags:
         from geomsim.drawing import FrameStyle
 
         evader = "hidden" if self.hide_evader else "shown"
-        return FrameStyle(size=self._size() or (1280, 720), theme=self.theme, evader=evader)
+        return FrameStyle(size=self._size() or (1280, 720), theme=self.theme, evader=evader, belief_of=self.belief_of)
 
     def _size(self) -> tuple[int, int] | None:
         if self.size is None:

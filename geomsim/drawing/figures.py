@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomsim.drawing.colours import mixed
+from geomsim.drawing.moment import Moment
 from geomsim.drawing.surface import Surface
 from geomsim.drawing.theme import Theme
 from geomsim.drawing.viewport import Viewport
@@ -82,8 +83,15 @@ class Figures:
         ends = np.stack([self._view.pixels(pursuer), self._view.pixels(evader)])
         surface.line(ends, self._theme.evader, 2.0 * self._unit)
 
-    def evader(self, surface: Surface, position: Array, *, captured: bool) -> None:
-        """Draw the evader, a diamond with an E; a ring around it once it is captured."""
+    def evaders(self, surface: Surface, moment: Moment, *, hidden: bool) -> None:
+        """Draw the evaders, those not captured yet only if they are not hidden; numbered if there are several."""
+        caught = {capture.evader for capture in moment.captures}
+        for k, position in enumerate(moment.evaders):
+            if k in caught or not hidden:
+                self._evader(surface, position, "E" if len(moment.evaders) == 1 else f"E{k + 1}", captured=k in caught)
+
+    def _evader(self, surface: Surface, position: Array, name: str, *, captured: bool) -> None:
+        """Draw an evader, a diamond with its name; a ring around it once it is captured."""
         centre = self._view.pixels(position)
         radius = 12.0 * self._unit
         if captured:
@@ -91,7 +99,7 @@ class Figures:
         for grown, colour in ((2.4 * self._unit, self._theme.casing), (0.0, self._theme.evader)):
             reach = radius + grown
             surface.polygon([centre + reach * np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])], colour)
-        self._label(surface, "E", centre, 12.0)
+        self._label(surface, name, centre, 12.0)
 
     def _label(self, surface: Surface, text: str, centre: Array, size: float) -> None:
         size *= self._unit * min(1.0, 2.1 / (len(text) + 0.6))

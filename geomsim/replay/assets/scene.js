@@ -143,19 +143,23 @@ class Scene {
     }
     if (layers.trails) for (const r of team) this.trail(context, episode.trail(r, where, t, 20), colour(r));
     if (layers.plans && !captured) for (const r of team) this.plan(context, episode.route(r, where, t), r, colour(r));
-    const evader = episode.evader(where);
     if (captured && data.outcome.robot) {
-      this.polyline(context, [episode.position(data.outcome.robot - 1, where), evader]);
+      const last = episode.evader(data.outcome.evader, where);
+      this.polyline(context, [episode.position(data.outcome.robot - 1, where), last]);
       context.strokeStyle = theme.evader;
       context.lineWidth = 2 * unit;
       context.stroke();
     }
-    if (layers.evader || captured) this.evader(context, evader, captured);
+    for (let k = 0; k < data.evaders; k++) {
+      const caught = episode.caught(k, t), name = data.evaders > 1 ? `E${k + 1}` : "E";
+      if (layers.evader || caught) this.evader(context, episode.evader(k, where), caught, name);
+    }
     for (const r of team) this.robot(context, r, episode.position(r, where), episode.heading(r, where), colour(r));
   }
 
   sight(context, robot, where, colour) {
-    const { range, field, byCell } = this.episode.data.sight, eye = this.episode.position(robot, where);
+    const { eyes, byCell } = this.episode.data.sight, { range, field } = eyes[robot];
+    const eye = this.episode.position(robot, where);
     context.save();
     context.globalAlpha = 0.38;
     context.fillStyle = colour;
@@ -219,7 +223,7 @@ class Scene {
     this.text(context, `${number + 1}`, [x, y], 12.5, theme.label, 700);
   }
 
-  evader(context, place, captured) {
+  evader(context, place, captured, name) {
     const { unit, theme } = this, [x, y] = this.pixel(place), radius = 12 * unit;
     if (captured) {
       context.beginPath();
@@ -235,7 +239,7 @@ class Scene {
       for (const [dx, dy] of [[1, 0], [0, 1], [-1, 0], [0, -1]]) context.lineTo(x + reach * dx, y + reach * dy);
       context.fill();
     }
-    this.text(context, "E", [x, y], 11.5, theme.label, 700);
+    this.text(context, name, [x, y], 11.5, theme.label, 700);
   }
 }
 
