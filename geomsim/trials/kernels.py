@@ -24,12 +24,26 @@ def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @_compiled
-def _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
-    """Whether no wall is between a and b: squares are visited in the order in which the ray goes through them.
+def _blocks(px, py, qx, qy, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    """Whether the wall from p to q is between a and b.
 
     A ray that touches the end of a wall is blocked; one that only ends on a wall, or runs along one, is not. These
     are the rules of pymunk's segment queries.
     """
+    dx, dy = bx - ax, by - ay
+    p = dx * (py - ay) - dy * (px - ax)
+    q = dx * (qy - ay) - dy * (qx - ax)
+    if p * q > 0.0:
+        return False
+    ex, ey = qx - px, qy - py
+    a = ex * (ay - py) - ey * (ax - px)
+    b = ex * (by - py) - ey * (bx - px)
+    return a * b < 0.0
+
+
+@_compiled
+def _blocker(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    """Return a wall that is between a and b, or -1; squares are visited in the order in which the ray goes on."""
     dx, dy = bx - ax, by - ay
     i = min(max(math.floor((ax - x0) / size), 0), columns - 1)
     j = min(max(math.floor((ay - y0) / size), 0), rows - 1)
@@ -49,22 +63,20 @@ def _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  
         square = j * columns + i
         for m in range(first[square], first[square + 1]):
             w = members[m]
-            px, py, qx, qy = walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3]
-            p = dx * (py - ay) - dy * (px - ax)
-            q = dx * (qy - ay) - dy * (qx - ax)
-            if p * q <= 0.0:
-                ex, ey = qx - px, qy - py
-                a = ex * (ay - py) - ey * (ax - px)
-                b = ex * (by - py) - ey * (bx - px)
-                if a * b < 0.0:
-                    return False
+            if _blocks(walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], ax, ay, bx, by):
+                return w
         if j == last_j or (i != last_i and leave_x < leave_y):
             i += step_i
             leave_x += side_x
         else:
             j += step_j
             leave_y += side_y
-    return True
+    return -1
+
+
+@_compiled
+def _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    return _blocker(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by) < 0
 
 
 @_compiled
@@ -81,6 +93,11 @@ def _blocked(walls, first, members, x0, y0, size, columns, rows, track):  # type
     for t in range(len(track) - 1):
         for k in range(track.shape[1]):
             ax, ay, bx, by = track[t, k, 0], track[t, k, 1], track[t + 1, k, 0], track[t + 1, k, 1]
+            i, j = math.floor((ax - x0) / size), math.floor((ay - y0) / size)
+            if i == math.floor((bx - x0) / size) and j == math.floor((by - y0) / size):
+                square = min(max(j, 0), rows - 1) * columns + min(max(i, 0), columns - 1)
+                if first[square] == first[square + 1]:
+                    continue  # most moves stay within a square that holds no wall
             if (ax != bx or ay != by) and not _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):
                 count += 1
     return count
@@ -110,6 +127,8 @@ def _looks(  # type: ignore[no-untyped-def]
 ):
     free = which.copy()
     left = len(free)
+    # the wall that hid an evader a step ago mostly hides it still
+    hides = np.full(looked.shape, -1, dtype=np.int32)
     for t in range(len(targets)):
         kept = 0
         for n in range(left):
@@ -126,7 +145,11 @@ def _looks(  # type: ignore[no-untyped-def]
                     off -= 2 * math.pi * np.rint(off / (2 * math.pi))
                     if abs(off) > half[i]:
                         continue
-                if _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):
+                w = hides[k, i]
+                if w >= 0 and _blocks(walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], ax, ay, bx, by):
+                    continue
+                hides[k, i] = _blocker(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by)
+                if hides[k, i] < 0:
                     looked[k, i] += rates[i]
                     if looked[k, i] >= patience[k, i]:
                         when[k], who[k] = t, i
