@@ -200,10 +200,16 @@ def main() -> None:
         rows.append(row | {"set": "ipa furnished" if "_furnitures" in entry["id"] else entry["category"]})
         lines.append(line(row))
         print(lines[-1], *row["told"], flush=True)
+        store(given, rows, lines)
     for name in sorted({row["set"] for row in rows if "rooms" in row}):
         rows.append(summary([row for row in rows if row.get("set") == name and "rooms" in row], name))
         lines.append(line(rows[-1]))
         print(lines[-1])
+        store(given, rows, lines)
+
+
+def store(given: argparse.Namespace, rows: list[dict], lines: list[str]) -> None:
+    """Write the table as far as it goes."""
     given.out.mkdir(parents=True, exist_ok=True)
     (given.out / "cells.json").write_text(json.dumps({"method": given.method, "plans": rows}, indent=1) + "\n")
     (given.out / "cells.md").write_text("\n".join(f"| {text} |" for text in lines) + "\n")
