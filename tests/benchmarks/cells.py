@@ -78,7 +78,7 @@ def reflex_vertices(plan: FloorPlan) -> int:
 
 def labelled_doors(entry: dict, cells: CellMap) -> tuple[int, int]:
     """Count the doors that a person marked and that have free space on both sides, and those that part two cells."""
-    file = ROOT / entry["file"].replace(".png", "_doors.yaml")
+    file = (ROOT / entry["file"]).with_name(Path(entry["file"]).stem + "_doors.yaml")
     if not file.exists():
         return 0, 0
     ends = np.array([[d["door_corner_pt_1"], d["door_corner_pt_2"]] for d in yaml.safe_load(file.read_text())])
