@@ -114,7 +114,7 @@ def run_trials(
             raise GeomsimError(f"There must be at least one {what}, but {count} were asked for.")
     if reference is not None and reference not in names:
         raise GeomsimError(f"The reference {reference!r} is none of the methods: {nearest(reference, names)}")
-    chosen = _engine(engine, evader)
+    chosen = _engine(engine, team, evader)
     if cells is None:
         from discretize import convex_cells
 
@@ -122,7 +122,7 @@ def run_trials(
     check_pursuit(cells, team, evader, capture)
     if evader.count > 1:
         raise GeomsimError(f"A trial has one evader, but {evader.count} were asked for; run them one at a time.")
-    reacts = bool(getattr(evader.model, "reacts", False))
+    reacts = bool(getattr(evader.model, "reacts", False)) or team.range_noise is not None
     experiment = Experiment(
         cells=cells,
         methods=made,
@@ -155,11 +155,17 @@ def run_trials(
     )
 
 
-def _engine(asked: str, evader: Evader) -> str:
+def _engine(asked: str, team: Team, evader: Evader) -> str:
     if asked not in ENGINES:
         raise GeomsimError(f"There is no engine {asked!r}: {nearest(asked, ENGINES)}")
-    if not getattr(evader.model, "reacts", False):
+    reacts = bool(getattr(evader.model, "reacts", False))
+    if not reacts and team.range_noise is None:
         return "shared" if asked == "auto" else asked
+    if asked == "shared" and not reacts:
+        raise GeomsimError(
+            "A team that measures ranges goes where its evader leads it, so that each of its trials needs a world of "
+            "its own: choose the engine 'separate' or 'auto'."
+        )
     if asked == "shared":
         raise GeomsimError(
             f"An evader of the kind {type(evader.model).__name__} reacts to robots, so that each of its trials needs "

@@ -71,9 +71,12 @@ def forecast(experiment: Experiment, method: int) -> Forecast | None:
     """Predict a method in the cell model, with what its team believes; None where that has no finite answer.
 
     The answer is exact, but for a planner that draws random numbers and whose Markov chain is too large: then it is
-    the mean of 20 runs, each exact. There is none where the team believes that it may never capture.
+    the mean of 20 runs, each exact. There is none where the team believes that it may never capture, or measures where
+    the evader is.
     """
     team, timing, starts = experiment.team_for(method), experiment.timing, experiment.starts
+    if team.range_noise is not None:  # it learns more than that it has not captured
+        return None
     roads, problem = believed_problem(experiment.cells, team, experiment.motion, timing.belief_step)
     belief = problem.first_belief(starts, int(roads.graph.component[starts[0]]))
     seed, steps = experiment.seeds[0], max(1, math.ceil(timing.limit / timing.belief_step))
