@@ -114,13 +114,13 @@ def run_trials(
             raise GeomsimError(f"There must be at least one {what}, but {count} were asked for.")
     if reference is not None and reference not in names:
         raise GeomsimError(f"The reference {reference!r} is none of the methods: {nearest(reference, names)}")
-    chosen = _engine(engine, evader)
+    chosen = _engine(engine, team, evader)
     if cells is None:
         from discretize import convex_cells
 
         cells = convex_cells(plan, radius=max(team.radius, evader.radius))
     check_pursuit(cells, team, evader, capture)
-    reacts = _reason(evader) is not None
+    reacts = _reason(team, evader) is not None
     experiment = Experiment(
         cells=cells,
         methods=made,
@@ -153,10 +153,10 @@ def run_trials(
     )
 
 
-def _engine(asked: str, evader: Evader) -> str:
+def _engine(asked: str, team: Team, evader: Evader) -> str:
     if asked not in ENGINES:
         raise GeomsimError(f"There is no engine {asked!r}: {nearest(asked, ENGINES)}")
-    reason = _reason(evader)
+    reason = _reason(team, evader)
     if reason is None:
         return "shared" if asked == "auto" else asked
     if asked == "shared":
@@ -166,8 +166,10 @@ def _engine(asked: str, evader: Evader) -> str:
     return "separate"
 
 
-def _reason(evader: Evader) -> str | None:
+def _reason(team: Team, evader: Evader) -> str | None:
     """Return why trials cannot share runs of the team, if they cannot."""
+    if team.range_noise is not None:
+        return "A team that measures ranges goes where its evader leads it"
     if getattr(evader.model, "reacts", False):
         return f"An evader of the kind {type(evader.model).__name__} reacts to robots"
     if evader.count > 1:
