@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from discretize import CellMap, Portal, check_cells, convex_cells
+    from geomsim.communication import Communication
     from geomsim.conformance import check_evader
-    from geomsim.episode import Episode, Outcome, Status
+    from geomsim.episode import Capture, Episode, Outcome, Status
     from geomsim.evaders import CentroidBoundary, Fleeing, Hiding, ShortestPaths, Still, register_evader
     from geomsim.guide import Guide, Order, Orders, Report
     from geomsim.plugins import load_plugins
@@ -44,8 +45,10 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "Capture",
     "CellMap",
     "CentroidBoundary",
+    "Communication",
     "Decoupled",
     "Episode",
     "Evader",
@@ -106,10 +109,11 @@ _HOMES = {
         "register_cost",
         "register_planner",
     ),
-    "geomsim.episode": ("Episode", "Outcome", "Status"),
+    "geomsim.communication": ("Communication",),
+    "geomsim.conformance": ("check_evader",),
+    "geomsim.episode": ("Capture", "Episode", "Outcome", "Status"),
     "geomsim.evaders": ("CentroidBoundary", "Fleeing", "Hiding", "ShortestPaths", "Still", "register_evader"),
     "geomsim.guide": ("Guide", "Order", "Orders", "Report"),
-    "geomsim.conformance": ("check_evader",),
     "geomsim.plugins": ("load_plugins",),
     "geomsim.pursuit": ("Timing", "run_episode"),
     "geomsim.scenario": ("Scenario", "read_scenario"),

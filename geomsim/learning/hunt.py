@@ -46,12 +46,13 @@ class Roamers(Teamwork):
         """Move the bodies."""
         self._move(self._wanted, dt)
 
-    def learn(self) -> None:
-        """Take a belief step: dispersion, then capture where the pursuers are (Eq. 3)."""
+    def learn(self, ranges: NDArray[np.float64] | None = None) -> None:
+        """Take a belief step: dispersion, capture where the pursuers are (Eq. 3), then the measured ``ranges``."""
         captures, graph = self.problem.captures, self.problem.graph
         for run, crew in enumerate(self.crews):
             rows = [capture.row(graph, int(cell)) for capture, cell in zip(captures, self.cells[run], strict=True)]
-            crew.learn(np.array(rows), self._contacts(run))
+            likelihoods = None if ranges is None else self._readings.likelihoods(self.positions[run], ranges)
+            crew.learn(np.array(rows), self._contacts(run), likelihoods)
 
 
 class Hunt:
