@@ -129,7 +129,7 @@ def test_a_robot_on_its_way_has_no_choice_and_is_not_turned_round() -> None:
 def test_velocities_move_robots_and_walls_stop_them() -> None:
     env = PursuitEnv("velocity", plan="house", pursuers=1, start=(1,), evader="still", evader_start=5, capture="cell")
     env.reset(seed=1)
-    before = env.hunt.work.positions[0, 0].copy()
+    before = env.hunt.work.positions[0, 0]
     env.step({"robot_1": np.array([0.3, -0.4], np.float32)})
     assert env.hunt.work.positions[0, 0] - before == pytest.approx([0.3, -0.4], abs=0.06)
     for _ in range(12):
