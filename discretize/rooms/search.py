@@ -1,6 +1,7 @@
 """The search for the best partition: many random merges pooled, an exact choice, and repair by breaking and joining."""
 
 from collections.abc import Callable
+from statistics import NormalDist
 
 import numpy as np
 import shapely
@@ -9,12 +10,13 @@ from shapely.geometry.base import BaseGeometry
 from discretize.rooms.faces import Faces
 from discretize.rooms.merging import Limits, Region, Regions, spread
 from discretize.rooms.selection import partition
+from discretize.rooms.shaking import Field
 
 __all__ = ["best_partition", "mutual_sight"]
 
 RUNS = 24  # randomised merges of a small plan
 EFFORT = 10_000  # faces times merges; larger plans get fewer merges
-MANY = 10_000  # faces; a plan with more is not improved any further
+MANY = 10_000  # faces; a plan with more is merged once and not improved any further
 SHARES = (0.0, 0.2, 0.2, 0.4, 0.4)  # of the cells that are broken before the merges that improve a partition
 ROUNDS = 3
 MARGIN = 0.3  # share of what sight may lack that estimates of it keep clear of
@@ -41,7 +43,7 @@ def best_partition(faces: Faces, limits: Limits, rng: np.random.Generator) -> tu
         What was done less thoroughly than usual.
     """
     regions = Regions(faces, limits)
-    runs = int(np.clip(EFFORT // max(len(faces), 1), 2, RUNS))
+    runs = int(np.clip(EFFORT // max(len(faces), 1), 2 if len(faces) <= MANY else 1, RUNS))
     for k in range(runs):
         regions.merge(regions.single, rng, 0.0 if k == 0 else 0.05 * (1 + k % 4))
     sound = _sees_itself(faces, limits.sight)
@@ -51,7 +53,8 @@ def best_partition(faces: Faces, limits: Limits, rng: np.random.Generator) -> tu
         before = len(regions.pool)
         for share in SHARES:
             start = []
-            for region, broken in zip(chosen, rng.random(len(chosen)) < share, strict=True):
+            luck = Field(rng)(np.array([region.points.mean(axis=0) for region in chosen]))
+            for region, broken in zip(chosen, [NormalDist().cdf(x) < share for x in luck.tolist()], strict=True):
                 start += [regions.single[face] for face in sorted(region.faces)] if broken else [region]
             regions.merge(start, rng, 0.1)
         if len(regions.pool) == before:
@@ -59,7 +62,8 @@ def best_partition(faces: Faces, limits: Limits, rng: np.random.Generator) -> tu
         chosen = partition(list(regions.pool.values()), len(faces), _cost, sound)
     if runs == RUNS:
         return chosen, ()
-    return chosen, (f"{runs} randomised merges instead of {RUNS}, because the plan falls into {len(faces)} faces.",)
+    told = f"{runs} randomised merge{'s' * (runs > 1)} instead of {RUNS}"
+    return chosen, (f"{told}, because the plan falls into {len(faces)} faces.",)
 
 
 def _cost(region: Region) -> float:

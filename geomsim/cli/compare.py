@@ -95,6 +95,7 @@ def _report(result: Any, folder: Path, *, figures: bool, json: bool) -> None:
     from geomsim.files import write_text
 
     told = result.as_dict()
+    told["cell_notes"] = list(result.experiment.cells.notes)
     if figures:
         from geomsim.trials.figures import draw_curves, draw_means
 
@@ -112,7 +113,7 @@ def _report(result: Any, folder: Path, *, figures: bool, json: bool) -> None:
     )
     for line in str(result.summary()).splitlines():
         say(line)
-    for note in result.notes:
+    for note in (*told["cell_notes"], *result.notes):
         say(note)
     for kind, file in told["files"].items():
         say(f"{kind + ':':<10} {file}")
