@@ -33,6 +33,7 @@ from planners.motion import (
     fit_motion,
 )
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
+from planners.refining import Refined
 from planners.registry import PLANNERS, PlannerEntry, make_planner, parse_method
 from planners.rollout import Rollout
 from planners.team import PlannerError
@@ -67,6 +68,7 @@ __all__ = [
     "Prediction",
     "PursuerState",
     "Random",
+    "Refined",
     "Rollout",
     "SameCell",
     "SearchGraph",
