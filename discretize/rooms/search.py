@@ -19,7 +19,7 @@ EFFORT = 10_000  # faces times merges; larger plans get fewer merges
 MANY = 10_000  # faces; a plan with more is merged once and not improved any further
 SHARES = (0.0, 0.2, 0.2, 0.4, 0.4)  # of the cells that are broken before the merges that improve a partition
 ROUNDS = 3
-MARGIN = 0.3  # share of what sight may lack that estimates of it keep clear of
+MARGIN = 0.15  # share of what sight may lack that estimates of it keep clear of
 CONVEX, SIGHT, OPEN = 1.0, 2.0, 0.15  # weights in the cost of a cell, beside 1 for being one
 
 
