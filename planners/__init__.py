@@ -35,6 +35,7 @@ from planners.motion import (
 )
 from planners.parts import MotionInParts, cut_cells
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
+from planners.refining import Refined
 from planners.registry import PLANNERS, PlannerEntry, make_planner, parse_method, register_planner
 from planners.roads import CHECKPOINTS, Roads
 from planners.rollout import Rollout
@@ -76,6 +77,7 @@ __all__ = [
     "Prediction",
     "PursuerState",
     "Random",
+    "Refined",
     "Roads",
     "Rollout",
     "SameCell",

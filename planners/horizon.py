@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from planners.beam import BeamSearch
 from planners.branching import Certificate, JointSearch
+from planners.clock import FOREVER, Clock
 from planners.policy import SearchProblem
 from planners.simulation import SearchModel
 from planners.team import TeamPolicy, at_least
@@ -33,20 +34,23 @@ class Sequential:
         Weight of each belief step relative to the one before it.
     patience : int
         Time between two searches, belief steps.
+    seconds : float
+        Thinking time for one decision; with a limit, results depend on the machine.
 
     Raises
     ------
     PlannerError
-        If a number is below 1, or the discount outside (0, 1].
+        If a number is below 1, or time or discount below 0.
     """
 
     horizon: int = 10
     discount: float = 1.0
     patience: int = 1
+    seconds: float = float("inf")
 
     def __post_init__(self) -> None:
         at_least(1, horizon=self.horizon, patience=self.patience)
-        at_least(0, discount=self.discount)
+        at_least(0, discount=self.discount, seconds=self.seconds)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
         """Prepare a policy; nothing in it is random."""
@@ -57,10 +61,11 @@ class Sequential:
             moves: Sequence[int],
             done: Sequence[int],
             announced: Sequence[Sequence[int]],  # noqa: ARG001  (every plan starts from nothing)
+            clock: Clock,
         ) -> Sequence[Sequence[int]]:
-            return respond(search, belief, moves, done, (), rounds=0)
+            return respond(search, belief, moves, done, (), rounds=0, clock=clock)
 
-        return TeamPolicy(search.model, allocate, self.patience)
+        return TeamPolicy(search.model, allocate, self.patience, self.seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,26 +85,39 @@ class BestResponse:
         Weight of each belief step relative to the one before it.
     patience : int
         Time between two searches, belief steps.
+    seconds : float
+        Thinking time for one decision; with a limit, results depend on the machine.
 
     Raises
     ------
     PlannerError
-        If a number is below 1, or the discount below 0.
+        If a number is below 1, or time or discount below 0.
     """
 
     horizon: int = 10
     rounds: int = 10
     discount: float = 1.0
     patience: int = 1
+    seconds: float = float("inf")
 
     def __post_init__(self) -> None:
         at_least(1, horizon=self.horizon, rounds=self.rounds, patience=self.patience)
-        at_least(0, discount=self.discount)
+        at_least(0, discount=self.discount, seconds=self.seconds)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
         """Prepare a policy; nothing in it is random."""
         search = JointSearch(SearchModel(problem), horizon=self.horizon, discount=self.discount)
-        return TeamPolicy(search.model, lambda *now: respond(search, *now, rounds=self.rounds), self.patience)
+
+        def answer(
+            belief: NDArray[np.float64],
+            moves: Sequence[int],
+            done: Sequence[int],
+            announced: Sequence[Sequence[int]],
+            clock: Clock,
+        ) -> Sequence[Sequence[int]]:
+            return respond(search, belief, moves, done, announced, rounds=self.rounds, clock=clock)
+
+        return TeamPolicy(search.model, answer, self.patience, self.seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +135,7 @@ class BranchAndBound:
     nodes : int
         The proof is given up after this many nodes.
     seconds : float
-        It is given up after this time; then results depend on the machine.
+        Thinking time for one decision; with a limit, results depend on the machine.
     discount : float
         Weight of each belief step relative to the one before it.
     patience : int
@@ -148,7 +166,7 @@ class CertifiedPolicy(TeamPolicy):
     """The policy of :class:`BranchAndBound`; ``certificate`` belongs to the last plan, None before the first."""
 
     def __init__(self, model: SearchModel, planner: BranchAndBound) -> None:
-        super().__init__(model, self._certify, planner.patience)
+        super().__init__(model, self._certify, planner.patience, planner.seconds)
         horizon, discount = planner.horizon, planner.discount
         self.limits = planner
         self.joint = JointSearch(model, horizon=horizon, discount=discount)
@@ -161,11 +179,11 @@ class CertifiedPolicy(TeamPolicy):
         moves: Sequence[int],
         done: Sequence[int],
         announced: Sequence[Sequence[int]],
+        clock: Clock,
     ) -> Sequence[Sequence[int]]:
-        plan = self.beam.run(belief, moves, done, announced).moves
-        plan = respond(self.joint, belief, moves, done, plan, rounds=10)
-        limits = self.limits
-        self.certificate = self.joint.run(belief, moves, done, plan, nodes=limits.nodes, seconds=limits.seconds)
+        plan = self.beam.run(belief, moves, done, announced, clock).moves
+        plan = respond(self.joint, belief, moves, done, plan, rounds=10, clock=clock)
+        self.certificate = self.joint.run(belief, moves, done, plan, nodes=self.limits.nodes, clock=clock)
         return self.certificate.moves
 
 
@@ -177,6 +195,7 @@ def respond(
     announced: Sequence[Sequence[int]],
     *,
     rounds: int,
+    clock: Clock = FOREVER,
 ) -> tuple[tuple[int, ...], ...]:
     """Return the plan of sequential allocation after some rounds of best responses.
 
@@ -189,20 +208,22 @@ def respond(
         better of the two results returned.
     rounds : int
         Rounds of answers at most.
+    clock : Clock
+        Ends the search.
     """
     team = range(len(moves))
     plans: tuple[tuple[int, ...], ...] = ((),) * len(moves)
     for i in team:
-        plans = search.run(belief, moves, done, plans, who=[i], absent=team[i + 1 :]).moves
+        plans = search.run(belief, moves, done, plans, who=[i], absent=team[i + 1 :], clock=clock).moves
     results = [plans] + ([tuple(map(tuple, announced))] if any(announced) else [])
     for k, plans in enumerate(results):
         value = search.value(belief, moves, done, plans)
         for _ in range(rounds):
             before = value
             for i in team:
-                answer = search.run(belief, moves, done, plans, who=[i])
+                answer = search.run(belief, moves, done, plans, who=[i], clock=clock)
                 plans, value = answer.moves, answer.value
-            if value <= before * (1.0 + 1e-9):
+            if value <= before * (1.0 + 1e-9) or clock.over():
                 break
         results[k] = plans
     return max(results, key=lambda plan: search.value(belief, moves, done, plan))

@@ -16,6 +16,7 @@ from planners.coupled import Coupled
 from planners.horizon import BestResponse, BranchAndBound, Sequential
 from planners.lookahead import Decoupled
 from planners.policy import Planner
+from planners.refining import Refined
 from planners.rollout import Rollout
 from planners.team import PlannerError
 
@@ -77,6 +78,12 @@ _PLANNERS = _table(
         Beam,
         "the team plans jointly for a long time ahead, by beam search on its expected time to capture",
         "after the paper; judged against sequential allocation and branch and bound in the benchmark",
+    ),
+    PlannerEntry(
+        "refined",
+        Refined,
+        "beam search, then each robot's path improved window by window, the rest kept; slow, for the best plans",
+        "local search over whole plans; each window by branch and bound",
     ),
     PlannerEntry(
         "sequential",
@@ -164,7 +171,8 @@ def make_planner(name: str, **parameters: Any) -> Planner:
     given = {key: value for key, value in parameters.items() if value is not None}
     for key, value in given.items():
         if key not in entry.parameters:
-            takes = " and ".join(entry.parameters) or "no parameter"
+            *others, last = entry.parameters or ("no parameter",)
+            takes = f"{', '.join(others)} and {last}" if others else last
             raise PlannerError(f"The planner {name!r} takes {takes}; got {key} = {value!r}.")
     return entry.make(**given)
 
