@@ -39,10 +39,9 @@ def draw_means(trials: Trials, path: Path) -> Path:
     axes.barh(rows, means, height=0.62, color="#9db8cf", label="mean of trials")
     errors = np.array([line.observed.sem or 0.0 for line in summary.methods])
     axes.errorbar(means, rows, xerr=errors, fmt="none", ecolor=_INK, capsize=3, lw=1.2, label="standard error")
-    told = [(line.predicted, row) for line, row in zip(summary.methods, rows, strict=True) if line.predicted]
-    if told:
-        axes.plot(*zip(*told, strict=True), "D", color="#d55e00", ms=5, ls="none", label="predicted in the cell model")
-    end = max(float((means + errors).max()), *(mean for mean, _ in told), 1e-9)
+    told = [line.predicted for line in summary.methods]
+    axes.plot(told, rows, "D", color="#d55e00", ms=5, ls="none", label="predicted in the cell model")
+    end = max(float((means + errors).max()), *told, 1e-9)
     wide = means.min() > 0 and end > 12 * means.min()
     if wide:
         axes.set_xscale("log")

@@ -24,12 +24,13 @@ def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @_compiled
-def _blocks(px, py, qx, qy, ax, ay, bx, by):  # type: ignore[no-untyped-def]
-    """Whether the wall from p to q is between a and b.
+def _blocks(walls, w, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    """Whether wall ``w``, from p to q, is between a and b.
 
     A ray that touches the end of a wall is blocked; one that only ends on a wall, or runs along one, is not. These
     are the rules of pymunk's segment queries.
     """
+    px, py, qx, qy = walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3]
     dx, dy = bx - ax, by - ay
     p = dx * (py - ay) - dy * (px - ax)
     q = dx * (qy - ay) - dy * (qx - ax)
@@ -42,8 +43,9 @@ def _blocks(px, py, qx, qy, ax, ay, bx, by):  # type: ignore[no-untyped-def]
 
 
 @_compiled
-def _blocker(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+def _blocker(grid, ax, ay, bx, by):  # type: ignore[no-untyped-def]
     """Return a wall that is between a and b, or -1; squares are visited in the order in which the ray goes on."""
+    size, columns, rows, (x0, y0) = grid.size, grid.columns, grid.rows, grid.origin
     dx, dy = bx - ax, by - ay
     i = min(max(math.floor((ax - x0) / size), 0), columns - 1)
     j = min(max(math.floor((ay - y0) / size), 0), rows - 1)
@@ -61,9 +63,9 @@ def _blocker(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by)
         leave_y = (y0 + (j + (1 if dy > 0 else 0)) * size - ay) / dy
     for _ in range(abs(last_i - i) + abs(last_j - j) + 1):
         square = j * columns + i
-        for m in range(first[square], first[square + 1]):
-            w = members[m]
-            if _blocks(walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], ax, ay, bx, by):
+        for m in range(grid.first[square], grid.first[square + 1]):
+            w = grid.members[m]
+            if _blocks(grid.walls, w, ax, ay, bx, by):
                 return w
         if j == last_j or (i != last_i and leave_x < leave_y):
             i += step_i
@@ -75,55 +77,38 @@ def _blocker(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by)
 
 
 @_compiled
-def _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
-    return _blocker(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by) < 0
+def _free(grid, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    return _blocker(grid, ax, ay, bx, by) < 0
 
 
 @_compiled
-def _pairs(walls, first, members, x0, y0, size, columns, rows, a, b):  # type: ignore[no-untyped-def]
+def _pairs(grid, a, b):  # type: ignore[no-untyped-def]
     seen = np.empty(len(a), dtype=np.bool_)
     for k in range(len(a)):
-        seen[k] = _free(walls, first, members, x0, y0, size, columns, rows, a[k, 0], a[k, 1], b[k, 0], b[k, 1])
+        seen[k] = _free(grid, a[k, 0], a[k, 1], b[k, 0], b[k, 1])
     return seen
 
 
 @_compiled
-def _blocked(walls, first, members, x0, y0, size, columns, rows, track):  # type: ignore[no-untyped-def]
+def _blocked(grid, track):  # type: ignore[no-untyped-def]
+    size, (x0, y0) = grid.size, grid.origin
     count = 0
     for t in range(len(track) - 1):
         for k in range(track.shape[1]):
             ax, ay, bx, by = track[t, k, 0], track[t, k, 1], track[t + 1, k, 0], track[t + 1, k, 1]
             i, j = math.floor((ax - x0) / size), math.floor((ay - y0) / size)
             if i == math.floor((bx - x0) / size) and j == math.floor((by - y0) / size):
-                square = min(max(j, 0), rows - 1) * columns + min(max(i, 0), columns - 1)
-                if first[square] == first[square + 1]:
+                square = min(max(j, 0), grid.rows - 1) * grid.columns + min(max(i, 0), grid.columns - 1)
+                if grid.first[square] == grid.first[square + 1]:
                     continue  # most moves stay within a square that holds no wall
-            if (ax != bx or ay != by) and not _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):
+            if (ax != bx or ay != by) and not _free(grid, ax, ay, bx, by):
                 count += 1
     return count
 
 
 @_compiled
 def _looks(  # type: ignore[no-untyped-def]
-    walls,
-    first,
-    members,
-    x0,
-    y0,
-    size,
-    columns,
-    rows,
-    eyes,
-    headings,
-    reach,
-    half,
-    rates,
-    targets,
-    which,
-    patience,
-    looked,
-    when,
-    who,
+    grid, eyes, headings, reach, half, rates, targets, which, patience, looked, when, who
 ):
     free = which.copy()
     left = len(free)
@@ -146,9 +131,9 @@ def _looks(  # type: ignore[no-untyped-def]
                     if abs(off) > half[i]:
                         continue
                 w = hides[k, i]
-                if w >= 0 and _blocks(walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], ax, ay, bx, by):
+                if w >= 0 and _blocks(grid.walls, w, ax, ay, bx, by):
                     continue
-                hides[k, i] = _blocker(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by)
+                hides[k, i] = _blocker(grid, ax, ay, bx, by)
                 if hides[k, i] < 0:
                     looked[k, i] += rates[i]
                     if looked[k, i] >= patience[k, i]:
@@ -187,18 +172,14 @@ def _meetings(occupied, rates, hidden, which, patience, looked, when, who):  # t
             break
 
 
-def _grid(grid: WallGrid) -> tuple[object, ...]:
-    return grid.walls, grid.first, grid.members, *grid.origin, grid.size, grid.columns, grid.rows
-
-
 def seen_pairs(grid: WallGrid, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return whether no wall is between ``a[k]`` and ``b[k]``, both of shape (K, 2), metres."""
-    return cast(NDArray[np.bool_], _pairs(*_grid(grid), np.asarray(a, np.float64), np.asarray(b, np.float64)))
+    return cast(NDArray[np.bool_], _pairs(grid, np.asarray(a, np.float64), np.asarray(b, np.float64)))
 
 
 def blocked_moves(grid: WallGrid, track: NDArray[Any]) -> int:
     """Count the moves that went through a wall, which must be none; ``track`` has shape (T, K, 2), metres."""
-    return int(_blocked(*_grid(grid), track))
+    return int(_blocked(grid, track))
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,20 +249,8 @@ def first_looks(
         Index into T and into P; -1 for an evader that was not noticed or not looked for.
     """
     when, who = _none(targets.shape[1])
-    _looks(
-        *_grid(grid),
-        eyes,
-        headings,
-        lookers.reach,
-        lookers.half,
-        lookers.rates,
-        targets,
-        which,
-        looked.patience,
-        looked.paid,
-        when,
-        who,
-    )
+    sharp = lookers.reach, lookers.half, lookers.rates
+    _looks(grid, eyes, headings, *sharp, targets, which, looked.patience, looked.paid, when, who)
     return when, who
 
 

@@ -90,8 +90,12 @@ def default_methods() -> tuple[str, ...]:
         if planner in PLANNERS:
             names += [f"{planner}-{cost}-{depth}" for cost in _FIGURE_5]
     later = [p for p in PLANNERS if p not in ("stationary", "random", "coupled", "decoupled")]
-    return (*names, *(parse_method(p).name for p in later))
+    return (*names, *(parse_method(p + _FURTHER.get(p, "")).name for p in later))
 
+
+#: planners over a fixed time whose own horizon is made for graphs with hops of one step: here it is in seconds, and a
+#: hop takes five to thirty
+_FURTHER = {"sequential": "-60", "best-response": "-60", "branch-and-bound": "-30"}
 
 _FIGURE_5 = ("distance-over-probability", "probability", "target-probability", "entropy")
 

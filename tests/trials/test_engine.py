@@ -1,6 +1,7 @@
 """Shared and separate engines give the same captures; so do any workers, and a run that was cut off."""
 
 import math
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -26,6 +27,7 @@ from geomsim.seeds import trial_seeds
 from geomsim.trials import Trials, run_trials
 from geomsim.trials.bank import Bank
 from geomsim.trials.experiment import Experiment
+from geomsim.walking import Route, Routes
 
 FAST = {"still": Stationary(), "random": Random(), "greedy": Decoupled(depth=1)}
 
@@ -40,6 +42,10 @@ KINDS = {
     "sight": {},
     "cell": {"capture": "cell"},
     "a short, narrow and slow eye": {"team": Team(start=(2,), sensor=Sensor(5.0, 2.0, 0.3)), "trials": 12},
+    "an eye for each": {
+        "team": Team(sensor=(Sensor(4.0), Sensor(detection=0.3, field_of_view=2.0)), speed=(1.0, 0.6)),
+        "trials": 12,
+    },
     "cell, slow": {"capture": "cell", "team": Team(sensor=Sensor(detection=0.2))},
     "shortest paths": {"evader": Evader(model=ShortestPaths(), speed=0.7), "capture": "cell"},
     "hiding": {"evader": Evader(model=Hiding()), "team": Team(pursuers=3, speed=1.4)},
@@ -151,6 +157,58 @@ def test_who_reacts_gets_a_world_of_its_own(house: CellMap) -> None:
     assert len({row.team_seed for row in fleeing.rows}) == 8
     with pytest.raises(GeomsimError, match="Fleeing reacts to robots"):
         compare(house, evader=Evader(model=Fleeing()), engine="shared")
+
+
+def test_several_evaders(house: CellMap) -> None:
+    """A trial ends with the last of them; robots learn of each capture, so that each trial has a world of its own."""
+    pair = compare(house, evader=Evader(count=2), capture="cell", trials=8)
+    assert (pair.engine, len(pair.rows), pair.wall_crossings) == ("separate", 24, 0)
+    for row in pair.rows[::5]:
+        team = Team(planner=FAST[row.method])
+        episode = run_episode(
+            house.plan,
+            house,
+            team,
+            Evader(count=2),
+            seed=row.seed,
+            team_seed=row.team_seed,
+            capture="cell",
+            timing=Timing(limit=400.0),
+        )
+        assert (episode.outcome.captured, episode.outcome.time) == (row.captured, pytest.approx(row.time))
+        assert len(episode.outcome.captures) == 2
+    one = compare(house, capture="cell", trials=8)
+    for alone, both in zip(one.summary().methods, pair.summary().methods, strict=True):
+        assert both.predicted > alone.predicted
+    with pytest.raises(GeomsimError, match="With 2 evaders robots search on"):
+        compare(house, evader=Evader(count=2), engine="shared")
+
+
+class Stubborn:
+    """Walks east, walls or not."""
+
+    def walk(self, routes: Routes, cell: int, rng: np.random.Generator, lookout: object) -> Iterator[Route]:  # noqa: ARG002
+        here = routes.checkpoint(cell)
+        way = np.stack([here, here + np.array([100.0, 0.0])])
+        while True:
+            yield Route((cell, cell), (cell, cell), way, np.array([0.0, 100.0]), math.inf, 100.0)
+
+
+@pytest.mark.parametrize("engine", ["shared", "separate"])
+def test_who_makes_no_progress_is_reported(house: CellMap, engine: str) -> None:
+    """Ten seconds at a wall are a note, not silence; and the wall holds."""
+    trials = compare(
+        house,
+        methods={"still": Stationary()},
+        evader=Evader(model=Stubborn()),
+        team=Team(start=(7,)),
+        capture="cell",
+        engine=engine,
+        trials=6,
+        timing=Timing(limit=30.0),
+    )
+    assert trials.wall_crossings == 0
+    assert any("The evader was held up at a wall for 10 s or more in 6 trials" in note for note in trials.notes)
 
 
 def test_what_is_not_captured_is_censored(house: CellMap) -> None:
