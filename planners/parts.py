@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MotionInParts", "cut_cells"]
 
-# However small a cell, its lattice has so many points in each direction.
-FEWEST = 2
+# Whatever the size of a cell, its lattice has at least so many points in each direction.
+FEWEST = 3
 
 
 def cut_cells(cells: CellMap, spacing: float) -> tuple[StateSpace, NDArray[np.float64]]:

@@ -74,8 +74,6 @@ def test_trials_of_a_team_that_measures_have_worlds_of_their_own(house: CellMap)
     assert len(made.rows) == 3
     with pytest.raises(GeomsimError, match="measures ranges goes where its evader leads it"):
         run_trials(house.plan, ["decoupled-entropy-1"], team=team, engine="shared", **given)
-    with pytest.raises(GeomsimError, match="A trial has one evader, but 2"):
-        run_trials(house.plan, ["decoupled-entropy-1"], evader=Evader(count=2), **given)
 
 
 def test_what_cannot_be_is_refused() -> None:

@@ -176,8 +176,8 @@ class FrameDrawer:
         surface = Raster(image)
         self._strip.draw_axes(surface)
         if self.style.belief:
-            title = "chance that the evader is in a cell, if not captured"
-            title += "" if self.style.belief_of is None else f" (robot {self.style.belief_of})"
+            who = self.style.belief_of
+            title = "chance that the evader is in a cell, " + ("if not captured" if who is None else f"to robot {who}")
             draw_colour_bar(surface, legend, self._scale, theme, unit, title)
         draw_scale_bar(surface, legend, self._floor.view.scale, theme, unit)
         at = (16 * unit, 23 * unit)
