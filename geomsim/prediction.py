@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +42,8 @@ class ScenarioPrediction:
         The number that people give to the first cell: 1, or 0 in an edge list.
     unit : str
         Of the times: "s", or "steps" in an edge list.
+    capture : {"cell", "sight"}
+        What counts as capture.
     scenario : dict
         What it depends on.
     """
@@ -51,6 +53,7 @@ class ScenarioPrediction:
     bounds: tuple[float, ...] | None
     first: int
     unit: str
+    capture: str
     scenario: dict[str, Any]
 
 
@@ -72,7 +75,13 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
         If the scenario cannot be read or predicted.
     """
     scenario = read_scenario(path, keys)
+    asked = scenario.capture if "capture" in scenario.model_fields_set else "cell"
+    capture = "sight" if "sight" in (asked, scenario.belief_capture) else "cell"
+    if scenario.range_noise is not None:
+        raise GeomsimError("What ranges robots will measure cannot be predicted: leave out range_noise.")
     if is_edge_list(scenario.plan):
+        if capture == "sight":
+            raise GeomsimError(f"{scenario.plan} is an edge list, without walls: capture by sight needs a floor plan.")
         graph = read_edge_list(scenario.plan)
         if scenario.planner == "random":  # in unit time a wandering pursuer chooses as the evader does
             scenario = scenario.model_copy(update={"options": {"wait": True} | scenario.options})
@@ -80,7 +89,7 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
         starts = _common(graph, scenario.pursuers) if everywhere else [_vertices(scenario, graph)]
     else:
         plan, cells = scenario.place()
-        team = scenario.team()
+        team = replace(scenario.team(), believes=capture)
         _, problem = believed_problem(cells, team, scenario.belief_motion(), scenario.belief_step)
         first, name = 1, plan.name
         graph = problem.graph
@@ -93,7 +102,13 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
     except TooLargeError:
         bounds = None
     unit = "steps" if first == 0 else "s"
-    return ScenarioPrediction(name, predictions, bounds, first, unit, scenario.as_dict())
+    # of a plan's checkpoints only cells have numbers that people know
+    numbered = len(graph) if first == 0 else len(cells)
+    predictions = tuple(
+        replace(p, paths=tuple(tuple(stop for stop in path if stop < numbered) for path in p.paths))
+        for p in predictions
+    )
+    return ScenarioPrediction(name, predictions, bounds, first, unit, capture, scenario.as_dict())
 
 
 def is_edge_list(plan: str) -> bool:

@@ -24,7 +24,9 @@ def predict(
     json: JsonFlag = False,
     flags: ScenarioFlags = ScenarioFlags(),  # noqa: B008 a frozen value without fields set
 ) -> int:
-    """Predict when a team will capture, exactly, in the cell model: same-cell capture, memoryless moves.
+    """Predict when a team will capture, exactly, in the cell model: memoryless moves, capture in the same cell.
+
+    With `--capture sight`, capture is by line of sight to parts of cells, within range and field of view.
 
     Parameters
     ----------
@@ -48,6 +50,7 @@ def predict(
         "lower_bound": None if result.bounds is None else float(np.mean(result.bounds)),
         "seconds_per_plan": float(np.nanmean(thought)) if np.isfinite(thought).any() else None,
         "unit": result.unit,
+        "capture": result.capture,
         "plans": [[[c + result.first for c in path] for path in p.paths] for p in result.predictions],
         "per_start": [_start(p, k, result.first, result.bounds) for k, p in enumerate(result.predictions)],
         "survival": result.predictions[0].survival.tolist() if len(result.predictions) == 1 else None,
@@ -56,7 +59,8 @@ def predict(
     if json:
         say_json(told)
         return 0
-    say(f"{result.name}: expected capture after {told['expected_time']:.2f} {result.unit}, in the cell model")
+    model = "by sight of parts of cells" if result.capture == "sight" else "in the cell model"
+    say(f"{result.name}: expected capture after {told['expected_time']:.2f} {result.unit}, {model}")
     if len(result.predictions) > 1:
         best, worst = (told["per_start"][int(k)] for k in (times.argmin(), times.argmax()))
         say(
@@ -64,7 +68,7 @@ def predict(
             f"to {worst['expected_time']:.2f} (cell {worst['start'][0]})"
         )
     if told["lower_bound"] is not None:
-        say(f"a team that always knew the evader's cell would need {told['lower_bound']:.2f}: none can be faster")
+        say(f"a team that always knew the evader's cell would need {told['lower_bound']:.2f} or more: none is faster")
     if told["seconds_per_plan"] is not None:
         say(f"mean time to plan: {1000 * told['seconds_per_plan']:.2f} ms")
     if len(result.predictions) == 1:

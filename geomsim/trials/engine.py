@@ -109,7 +109,7 @@ def run_trials(
     team, evader, timing = team or Team(), evader or Evader(), timing or Timing(limit=10_000.0)
     made = make_methods(methods)
     _check_request([method.name for method in made], trials, team_runs, reference)
-    chosen = _engine(engine, evader)
+    chosen = _engine(engine, team, evader)
     if cells is None:
         from discretize import convex_cells
 
@@ -124,7 +124,7 @@ def run_trials(
         motion=motion or AreaSpeedDegree(evader.speed),
         timing=timing,
         trials=trials,
-        team_runs=min(team_runs, trials) if _reason(evader) is None else trials,
+        team_runs=min(team_runs, trials) if _reason(team, evader) is None else trials,
         seed=seed,
     )
     _check_start(experiment)
@@ -155,10 +155,10 @@ def _check_request(names: Sequence[str], trials: int, team_runs: int, reference:
         raise GeomsimError(f"The reference {reference!r} is none of the methods: {nearest(reference, names)}")
 
 
-def _engine(asked: str, evader: Evader) -> str:
+def _engine(asked: str, team: Team, evader: Evader) -> str:
     if asked not in ENGINES:
         raise GeomsimError(f"There is no engine {asked!r}: {nearest(asked, ENGINES)}")
-    reason = _reason(evader)
+    reason = _reason(team, evader)
     if reason is None:
         return "shared" if asked == "auto" else asked
     if asked == "shared":
@@ -168,12 +168,14 @@ def _engine(asked: str, evader: Evader) -> str:
     return "separate"
 
 
-def _reason(evader: Evader) -> str | None:
+def _reason(team: Team, evader: Evader) -> str | None:
     """Return why trials cannot share runs of the team, if they cannot."""
     if getattr(evader.model, "reacts", False):
         return f"An evader of the kind {type(evader.model).__name__} reacts to robots"
     if evader.count > 1:
         return f"With {evader.count} evaders robots search on for the others once one is captured"
+    if team.range_noise is not None:
+        return "A team that measures ranges goes where its evader leads it"
     return None
 
 
