@@ -31,9 +31,9 @@ class Forecast:
     mean : float
         Expected capture time, where an evader still free at the time limit counts with that; seconds.
     free : ndarray, shape (T + 1,)
-        Probability that the evader is free after each physics step.
+        Probability that the evader is free after each step.
     step : float
-        Of physics, seconds.
+        Seconds.
     """
 
     mean: float
@@ -58,8 +58,9 @@ def forecast(experiment: Experiment, runs: Sequence[TeamRun]) -> Forecast:
 
     The evader dwells in each cell as long as one that walks from checkpoint to checkpoint does on average
     (:class:`planners.DwellTime`), unless its model tells otherwise (its ``in_cells``). That time has two halves, before
-    and after the checkpoint; it begins at one. Capture is in the same cell, as likely as the sensor notices. Of several
-    evaders the last one counts, for a team that goes on as if none had been captured.
+    and after the checkpoint; it begins at one. A team that counts on sight is taken at its word instead: the prediction
+    is what it believes at each belief step of its run. Otherwise capture is in the same cell, as likely as the sensor
+    notices, and of several evaders the last one counts, for a team that goes on as if none had been captured.
 
     Parameters
     ----------
@@ -68,8 +69,11 @@ def forecast(experiment: Experiment, runs: Sequence[TeamRun]) -> Forecast:
     runs : sequence of TeamRun
         Those of one method.
     """
-    step, limit = experiment.timing.physics_step, experiment.timing.limit
-    curves = _free(experiment, runs)
+    timing, limit = experiment.timing, experiment.timing.limit
+    if experiment.team.believes == "sight":
+        step, curves = timing.belief_step, [run.unseen[: run.steps // timing.steps_per_belief + 1] for run in runs]
+    else:
+        step, curves = timing.physics_step, _free(experiment, runs)
     mean = float(np.mean([_mean(curve, step, limit) for curve in curves]))
     length = max(map(len, curves))
     free = np.mean([_lengthened(curve, length) for curve in curves], axis=0)

@@ -285,7 +285,8 @@ def moving(cells: CellMap, quick: bool) -> list[dict[str, Any]]:
     """Steps of a body a second, against programs that move crowds."""
     steps, theirs = (300, 20) if quick else (1500, 60)
     told = experiment(cells, 1000, 300.0)
-    ours = sum(spent(lambda first=first: Bank(told, range(first, first + 500)).reel(steps))[0] for first in (0, 500))
+    banks = [Bank(told, range(first, first + 500)) for first in (0, 500)]  # made before, as the peers' agents are
+    ours = sum(spent(lambda bank=bank: bank.reel(steps))[0] for bank in banks)
     rows = []
     for name, peer, least in (("pyrvo", rvo, 10), ("JuPedSim", jupedsim, 40)):
         took = peer(told, 1000, theirs)

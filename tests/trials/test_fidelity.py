@@ -109,3 +109,18 @@ def test_prediction_and_world_agree(house: CellMap) -> None:
     )
     for line in trials.summary().methods:
         assert line.predicted == pytest.approx(line.observed.mean, rel=0.1), line.name
+
+
+@pytest.mark.parametrize("start", [2, 4])
+def test_a_team_that_counts_on_sight(house: CellMap, start: int) -> None:
+    """What it believes along its run is what comes out, to within a belief step."""
+    trials = run_trials(
+        house.plan,
+        {"greedy": Decoupled(depth=1)},
+        cells=house,
+        team=Team(start=(start,), believes="sight"),
+        trials=200,
+        workers=1,
+    )
+    line = trials.summary()["greedy"]
+    assert abs(line.predicted - line.observed.mean) < 1.0
