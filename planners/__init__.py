@@ -35,6 +35,7 @@ from planners.motion import (
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
 from planners.registry import PLANNERS, PlannerEntry, make_planner, parse_method
 from planners.rollout import Rollout
+from planners.space import StateSpace
 from planners.team import PlannerError
 from planners.walks import TooLargeError
 
@@ -73,6 +74,7 @@ __all__ = [
     "SearchProblem",
     "SearchState",
     "Sequential",
+    "StateSpace",
     "Stationary",
     "StationaryMotion",
     "TooLargeError",

@@ -117,13 +117,13 @@ class BeamSearch:
         self.model = model
         self.width, self.alike, self.horizon = width, alike, horizon
         self.discount, self.residue = discount, residue
-        by_speed = {speed: model.reach(model.speeds.index(speed)) for speed in model.speeds}
-        self._reach = [by_speed[speed] for speed in model.speeds]
+        by_kind = {kind: model.reach(model.kind.index(kind)) for kind in model.kind}
+        self._reach = [by_kind[kind] for kind in model.kind]
         # A joint position is told by a sum of one random number for each pursuer's move, times how far it is: so
         # pursuers of the same kind may change places. Nothing else hangs on these numbers.
-        kinds = sorted(set(model.speeds))
-        salt = np.random.default_rng(0).integers(1, 2**63, (len(kinds), len(model.moves[0].target)), dtype=np.uint64)
-        self._salt = salt[[kinds.index(speed) for speed in model.speeds]]
+        size = len(model.kinds), len(model.moves[0].target)
+        salt = np.random.default_rng(0).integers(1, 2**63, size, dtype=np.uint64)
+        self._salt = salt[list(model.kind)]
 
     def run(
         self,

@@ -77,9 +77,7 @@ class JointSearch:
         self.looks = (
             table.indptr.astype(np.int64), table.indices.astype(np.int64), table.data, table.toarray()
         )  # fmt: skip
-        speeds = sorted(set(model.speeds))
-        self.kind = np.array([speeds.index(speed) for speed in model.speeds])
-        kinds = [model.moves[model.speeds.index(speed)] for speed in speeds]
+        self.kind, kinds = np.array(model.kind), model.kinds
         longest = max(moves.views.shape[1] for moves in kinds)
         views = [np.pad(moves.views, ((0, 0), (0, longest - moves.views.shape[1])), mode="edge") for moves in kinds]
         steps = [moves.steps for moves in kinds]

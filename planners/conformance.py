@@ -8,7 +8,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from maps import GeomsimError
-from planners.belief import uniform_belief
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
 
 __all__ = ["ConformanceError", "check_policy"]
@@ -35,7 +34,7 @@ def check_policy(planner: Planner, problem: SearchProblem, rng: np.random.Genera
     planner : Planner
         What is checked.
     problem : SearchProblem
-        On what; its motion model's states must be the cells of its graph.
+        On what.
     rng : Generator
         Chooses the states and the policy's seed.
     rounds : int
@@ -111,7 +110,9 @@ def _random_state(problem: SearchProblem, rng: np.random.Generator, *, at_checkp
         pursuers.append(PursuerState(cell, target, duration * float(rng.uniform(0.01, 1.0))))
     if not any(p.target is None for p in pursuers):
         pursuers[0] = PursuerState(pursuers[0].cell)
-    weights = rng.dirichlet(np.ones(len(graph) + 1)) * np.concatenate([[1.0], uniform_belief(graph)[1:] > 0])
+    possible = problem.first_belief(()) > 0
+    possible[0] = True
+    weights = rng.dirichlet(np.ones(len(possible))) * possible
     return SearchState(
         time=float(rng.uniform(0.0, 100.0)),
         belief=weights / weights.sum(),

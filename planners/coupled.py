@@ -129,8 +129,7 @@ class CoupledPolicy:
                 rows = np.flatnonzero((done[j] == table.steps[on[j]]) & (hop[j] < self.depth))
                 if not len(rows):
                     continue
-                target = table.target[on[j][rows]]
-                chance = model.looks.chance(set_out[j], target, rows)
+                chance = model.looks.chance(set_out[j], table.views[on[j][rows], -1], rows)
                 distance = model.length_of(on[j][rows])
                 total[rows] += self.cost(Hops(set_out[j][rows], free[rows], chance, distance))
                 set_out[j][rows] = free[rows]

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planners.baselines import Random, Stationary
-from planners.belief import uniform_belief
-from planners.graph import GraphError, SearchGraph
+from planners.graph import GraphError
 from planners.policy import Planner, Policy, SearchProblem
 from planners.running import run_policy
 from planners.simulation import SearchModel
@@ -80,7 +79,7 @@ def predict(
     rng : Generator
         Given to the planner; the same for each start, so that one start's result does not depend on the others.
     belief : ndarray, shape (N + 1,), optional
-        Where the evader is at first; without it uniform over all cells that the pursuers can reach but their own.
+        Where the evader is at first; without it uniform over all cells but those of the pursuers.
     residue : float
         A pursuit is followed until the probability of no capture is below this; what is left is taken to go on at
         the rate of the last half.
@@ -98,8 +97,8 @@ def predict(
     beliefs = []
     for start in starts:
         _check_start(problem, start)
-        beliefs.append(_first_belief(problem.graph, start) if belief is None else belief)
-        _check_reach(problem.graph, start, beliefs[-1])
+        beliefs.append(problem.first_belief(start) if belief is None else belief)
+        _check_reach(problem, start, beliefs[-1])
     seed = int(rng.integers(2**63))
     teams = [tuple(int(cell) for cell in start) for start in starts]
     if isinstance(planner, Random):
@@ -127,7 +126,7 @@ def lower_bounds(
     """
     chain = JointChain(problem, wait=True)
     times = chain.informed_times()
-    first = [_first_belief(problem.graph, start) if belief is None else belief for start in starts]
+    first = [problem.first_belief(start) if belief is None else belief for start in starts]
     return tuple(float(b[1:] @ times[tuple(start)]) for start, b in zip(starts, first, strict=True))
 
 
@@ -179,10 +178,6 @@ def _follow(
     return Prediction(team, run.expected_steps() * model.step, run.survival, paths, mean)
 
 
-def _first_belief(graph: SearchGraph, start: Sequence[int]) -> NDArray[np.float64]:
-    return uniform_belief(graph, exclude=start)
-
-
 def _check_start(problem: SearchProblem, start: Sequence[int]) -> None:
     if len(start) != len(problem.speeds):
         raise GraphError(f"The start names {len(start)} cells; there are {len(problem.speeds)} pursuers.")
@@ -191,9 +186,9 @@ def _check_start(problem: SearchProblem, start: Sequence[int]) -> None:
             raise GraphError(f"The start names cell {cell + 1}; cells are numbered from 1 to {len(problem.graph)}.")
 
 
-def _check_reach(graph: SearchGraph, start: Sequence[int], belief: NDArray[np.float64]) -> None:
-    if len(belief) != len(graph) + 1:
-        return
-    reached = np.isin(graph.component, graph.component[list(start)])
-    for cell in np.flatnonzero((belief[1:] > 0) & ~reached)[:1]:
+def _check_reach(problem: SearchProblem, start: Sequence[int], belief: NDArray[np.float64]) -> None:
+    part = problem.graph.component
+    reached = np.isin(part, part[list(start)])[problem.states.cell]
+    for state in np.flatnonzero((belief[1:] > 0) & ~reached)[:1]:
+        cell = int(problem.states.cell[state])
         raise GraphError(f"The evader may be in cell {cell + 1}, which no pursuer can reach from its start.")

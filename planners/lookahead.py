@@ -212,7 +212,7 @@ def grow_tree(
         before = beliefs[parent]
         beliefs = _simulate(model, beliefs, parent, clock, moves.steps[move], moves.views[move], unseen)
         clock = clock[parent] + moves.steps[move]
-        chance = model.looks.chance(before, cells)
+        chance = model.looks.chance(before, moves.views[move, -1])
         total = total[parent] + cost(Hops(before, beliefs, chance, graph.length[edge]))
         tree.cells.append(cells)
         tree.parents.append(parent)

@@ -9,9 +9,11 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.capture import CaptureModel
+from planners.belief import uniform_belief
+from planners.capture import CaptureError, CaptureModel
 from planners.graph import SearchGraph
 from planners.motion import MotionModel
+from planners.space import StateSpace
 
 __all__ = ["Decision", "Planner", "Policy", "PursuerState", "SearchProblem", "SearchState"]
 
@@ -26,19 +28,57 @@ class SearchProblem:
         Cells and the ways between them.
     motion : MotionModel
         How the evader is believed to move.
-    capture : CaptureModel
-        What a pursuer is believed to catch.
+    capture : CaptureModel or tuple of CaptureModel
+        What a pursuer is believed to catch: one for all, or one for each.
     speeds : tuple of float
         Speed of each pursuer, metres a second; its length is the size R of the team.
     time_step : float
         Time between two belief steps, seconds.
+    space : StateSpace, optional
+        What the states of the belief are; without it the cells of the graph.
+
+    Raises
+    ------
+    CaptureError
+        If there are several capture models, but not one for each pursuer.
     """
 
     graph: SearchGraph
     motion: MotionModel
-    capture: CaptureModel
+    capture: CaptureModel | tuple[CaptureModel, ...]
     speeds: tuple[float, ...]
     time_step: float = 1.0
+    space: StateSpace | None = None
+
+    def __post_init__(self) -> None:
+        if isinstance(self.capture, tuple) and len(self.capture) != len(self.speeds):
+            raise CaptureError(
+                f"There are {len(self.capture)} capture models for {len(self.speeds)} pursuers: give one, or one each."
+            )
+
+    @property
+    def captures(self) -> tuple[CaptureModel, ...]:
+        """Capture model of each pursuer."""
+        return self.capture if isinstance(self.capture, tuple) else (self.capture,) * len(self.speeds)
+
+    @property
+    def states(self) -> StateSpace:
+        """What the states of the belief are."""
+        return StateSpace.of_cells(len(self.graph)) if self.space is None else self.space
+
+    def first_belief(self, start: Sequence[int], component: int | None = None) -> NDArray[np.float64]:
+        """Return where the evader is at first: in any cell alike but those in which pursuers start; shape (S + 1,).
+
+        Parameters
+        ----------
+        start : sequence of int
+            Cells of the pursuers, counted from 0.
+        component : int, optional
+            Only cells of this connected component of the graph; without it every cell that can be entered.
+        """
+        beyond = range(self.states.cells, len(self.graph))  # checkpoints that are no cells
+        cells = uniform_belief(self.graph, exclude=[*start, *beyond], component=component)
+        return self.states.spread(cells[: self.states.cells + 1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +109,7 @@ class SearchState:
     time : float
         Seconds since the pursuit began.
     belief : ndarray, shape (N + 1,)
-        Probability of the capture state (index 0) and of the evader's being in each cell.
+        Probability of the capture state (index 0) and of the evader's being in each of N states.
     pursuers : tuple of PursuerState
         The team, R of them.
     plans : tuple of tuple of int

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from planners.capture import CaptureModel
 from planners.graph import SearchGraph
 from planners.policy import PursuerState, SearchProblem
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from planners.motion import Sparse
 
 __all__ = ["Looks", "Moves", "SearchModel"]
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +37,7 @@ class Moves:
     steps : ndarray of intp, shape (M,)
         Belief steps that each move takes: ``max(1, round(time / time_step))`` along an edge.
     views : ndarray of intp, shape (M, max(steps))
-        Viewpoint after each step; the last one is repeated to the end of the row.
+        Viewpoint after each step, a row of :class:`Looks`; the last one is repeated to the end of the row.
     """
 
     start: NDArray[np.intp]
@@ -43,8 +46,11 @@ class Moves:
     views: NDArray[np.intp]
 
     @classmethod
-    def of(cls, problem: SearchProblem, speed: float) -> Moves:
-        """Divide every edge into belief steps for a pursuer of this speed, metres a second."""
+    def of(cls, problem: SearchProblem, speed: float, capture: CaptureModel, first: int) -> Moves:
+        """Divide every edge into belief steps for a pursuer of some speed (metres a second) and capture model.
+
+        ``first`` is the row of :class:`Looks` at which this model's viewpoints begin.
+        """
         graph = problem.graph
         cells = np.arange(len(graph))
         length = graph.length
@@ -56,9 +62,9 @@ class Moves:
         for edge, move in enumerate(go):
             n = steps[move]
             way = length[edge] * np.arange(1, n + 1) / n
-            views[move, :n] = problem.capture.viewpoints(graph, edge, way)
+            views[move, :n] = capture.viewpoints(graph, edge, way)
             views[move, n:] = views[move, n - 1]
-        return cls(graph.indptr + np.arange(len(graph) + 1), target, steps, views)
+        return cls(graph.indptr + np.arange(len(graph) + 1), target, steps, views + first)
 
 
 class Looks:
@@ -102,7 +108,14 @@ class SearchModel:
     Parameters
     ----------
     problem : SearchProblem
-        The problem; its matrix and capture table are made here.
+        The problem; its matrix and capture tables are made here.
+
+    Attributes
+    ----------
+    kinds : tuple of Moves
+        One for each kind of pursuer; those of a kind have equal speeds and capture models.
+    kind : tuple of int
+        Kind of each pursuer.
     """
 
     graph: SearchGraph
@@ -116,9 +129,15 @@ class SearchModel:
         self.states = inner.shape[0]
         self.dispersion = inner.tocsr()
         self._transposed = inner.T.tocsr()
-        self.looks = Looks(problem.capture.table(problem.graph))
-        by_speed = {speed: Moves.of(problem, speed) for speed in sorted(set(problem.speeds))}
-        self.moves = tuple(by_speed[speed] for speed in problem.speeds)
+        captures = _different(problem.captures)
+        tables = [capture.table(problem.graph) for capture in captures]
+        first = np.cumsum([0, *(table.shape[0] for table in tables)])
+        self.looks = Looks(_stacked(tables))
+        pursuers = list(zip(problem.speeds, map(captures.index, problem.captures), strict=True))
+        kinds = _different(pursuers)
+        self.kind = tuple(map(kinds.index, pursuers))
+        self.kinds = tuple(Moves.of(problem, speed, captures[k], int(first[k])) for speed, k in kinds)
+        self.moves = tuple(self.kinds[k] for k in self.kind)
 
     def disperse(self, beliefs: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return many beliefs, shape (K, N), one step of the evader's motion later.
@@ -143,7 +162,7 @@ class SearchModel:
         tail = np.repeat(np.arange(cells), self.graph.degree)
         steps: NDArray[np.float64] = np.delete(moves.steps, moves.start[:-1]).astype(np.float64)
         apart = dijkstra(coo_array((steps, (tail, self.graph.indices)), shape=(cells, cells)))
-        seen = self.looks.table[:cells].tocoo()
+        seen = self.looks.table[moves.views[moves.start[:-1], 0]].tocoo()
         nearest = np.full((self.states, cells), np.inf)
         np.minimum.at(nearest, seen.coords[1], apart[seen.coords[0]])
         finite = np.isfinite(nearest)
@@ -271,3 +290,14 @@ class SearchModel:
                 gone[i] += 1
             beliefs.append(after)
         return np.array(beliefs)
+
+
+def _different(things: Sequence[T]) -> list[T]:
+    """Return each thing once, in the order in which they first come; they need not be hashable."""
+    return [one for k, one in enumerate(things) if one not in things[:k]]
+
+
+def _stacked(tables: Sequence[Sparse]) -> Sparse:
+    from scipy.sparse import csr_array, vstack
+
+    return csr_array(vstack(tables))

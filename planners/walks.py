@@ -46,7 +46,7 @@ class Walk:
     def of(cls, moves: Moves, *, wait: bool) -> Walk:
         """List the positions and steps of a pursuer that may wait at checkpoints, or may not."""
         cells = len(moves.start) - 1
-        first, last, views = [], [], list(range(cells))
+        first, last, views = [], [], moves.views[moves.start[:-1], 0].tolist()
         for cell in range(cells):
             begin, end = moves.start[cell], moves.start[cell + 1]
             for move in range(begin if wait or end == begin + 1 else begin + 1, end):
