@@ -9,6 +9,7 @@ from discretize.errors import DiscretizeError
 from discretize.exact import exact_cells
 from discretize.methods import METHODS, Method
 from discretize.visibility import visibility_cells, visibility_count
+from discretize.wallgrid import WallGrid
 
 __all__ = [
     "METHODS",
@@ -18,6 +19,7 @@ __all__ = [
     "DiscretizeError",
     "Method",
     "Portal",
+    "WallGrid",
     "cells_text",
     "certify",
     "check_cells",

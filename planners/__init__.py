@@ -34,12 +34,14 @@ from planners.motion import (
 )
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
 from planners.registry import PLANNERS, PlannerEntry, make_planner, parse_method
+from planners.roads import CHECKPOINTS, Roads
 from planners.rollout import Rollout
 from planners.space import StateSpace
 from planners.team import PlannerError
 from planners.walks import TooLargeError
 
 __all__ = [
+    "CHECKPOINTS",
     "COSTS",
     "PLANNERS",
     "AreaSpeedDegree",
@@ -68,6 +70,7 @@ __all__ = [
     "Prediction",
     "PursuerState",
     "Random",
+    "Roads",
     "Rollout",
     "SameCell",
     "SearchGraph",

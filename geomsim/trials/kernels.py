@@ -1,4 +1,4 @@
-"""What is compiled: rays among walls, and the first look of a team at each of many evaders.
+"""What is compiled: the first look of a team at each of many evaders.
 
 Imported late: numba takes half a second to import, and the first run after an installation some seconds to compile.
 """
@@ -6,87 +6,32 @@ Imported late: numba takes half a second to import, and the first run after an i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from geomsim.trials.walls import WallGrid
+from discretize import WallGrid
+from discretize.raycast import compiled, free_line, grid_arrays
 
-__all__ = ["Looked", "Lookers", "blocked_moves", "first_looks", "first_meetings", "seen_pairs"]
-
-
-def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    return cast(Callable[..., Any], numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+__all__ = ["Looked", "Lookers", "blocked_moves", "first_looks", "first_meetings"]
 
 
-@_compiled
-def _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
-    """Whether no wall is between a and b: squares are visited in the order in which the ray goes through them.
-
-    A ray that touches the end of a wall is blocked; one that only ends on a wall, or runs along one, is not. These
-    are the rules of pymunk's segment queries.
-    """
-    dx, dy = bx - ax, by - ay
-    i = min(max(math.floor((ax - x0) / size), 0), columns - 1)
-    j = min(max(math.floor((ay - y0) / size), 0), rows - 1)
-    last_i = min(max(math.floor((bx - x0) / size), 0), columns - 1)
-    last_j = min(max(math.floor((by - y0) / size), 0), rows - 1)
-    step_i, step_j = (1 if dx > 0 else -1), (1 if dy > 0 else -1)
-    # share of the ray at which it leaves the square, and for one square's side
-    side_x, side_y = np.inf, np.inf
-    leave_x, leave_y = np.inf, np.inf
-    if dx != 0.0:
-        side_x = size / abs(dx)
-        leave_x = (x0 + (i + (1 if dx > 0 else 0)) * size - ax) / dx
-    if dy != 0.0:
-        side_y = size / abs(dy)
-        leave_y = (y0 + (j + (1 if dy > 0 else 0)) * size - ay) / dy
-    for _ in range(abs(last_i - i) + abs(last_j - j) + 1):
-        square = j * columns + i
-        for m in range(first[square], first[square + 1]):
-            w = members[m]
-            px, py, qx, qy = walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3]
-            p = dx * (py - ay) - dy * (px - ax)
-            q = dx * (qy - ay) - dy * (qx - ax)
-            if p * q <= 0.0:
-                ex, ey = qx - px, qy - py
-                a = ex * (ay - py) - ey * (ax - px)
-                b = ex * (by - py) - ey * (bx - px)
-                if a * b < 0.0:
-                    return False
-        if j == last_j or (i != last_i and leave_x < leave_y):
-            i += step_i
-            leave_x += side_x
-        else:
-            j += step_j
-            leave_y += side_y
-    return True
-
-
-@_compiled
-def _pairs(walls, first, members, x0, y0, size, columns, rows, a, b):  # type: ignore[no-untyped-def]
-    seen = np.empty(len(a), dtype=np.bool_)
-    for k in range(len(a)):
-        seen[k] = _free(walls, first, members, x0, y0, size, columns, rows, a[k, 0], a[k, 1], b[k, 0], b[k, 1])
-    return seen
-
-
-@_compiled
+@compiled
 def _blocked(walls, first, members, x0, y0, size, columns, rows, track):  # type: ignore[no-untyped-def]
     count = 0
     for t in range(len(track) - 1):
         for k in range(track.shape[1]):
             ax, ay, bx, by = track[t, k, 0], track[t, k, 1], track[t + 1, k, 0], track[t + 1, k, 1]
-            if (ax != bx or ay != by) and not _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):
+            if (ax != bx or ay != by) and not free_line(
+                walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by
+            ):
                 count += 1
     return count
 
 
-@_compiled
+@compiled
 def _looks(  # type: ignore[no-untyped-def]
     walls,
     first,
@@ -126,7 +71,7 @@ def _looks(  # type: ignore[no-untyped-def]
                     off -= 2 * math.pi * np.rint(off / (2 * math.pi))
                     if abs(off) > half[i]:
                         continue
-                if _free(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):
+                if free_line(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):
                     looked[k, i] += rates[i]
                     if looked[k, i] >= patience[k, i]:
                         when[k], who[k] = t, i
@@ -140,7 +85,7 @@ def _looks(  # type: ignore[no-untyped-def]
             break
 
 
-@_compiled
+@compiled
 def _meetings(occupied, rates, hidden, which, patience, looked, when, who):  # type: ignore[no-untyped-def]
     free = which.copy()
     left = len(free)
@@ -164,18 +109,9 @@ def _meetings(occupied, rates, hidden, which, patience, looked, when, who):  # t
             break
 
 
-def _grid(grid: WallGrid) -> tuple[object, ...]:
-    return grid.walls, grid.first, grid.members, *grid.origin, grid.size, grid.columns, grid.rows
-
-
-def seen_pairs(grid: WallGrid, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return whether no wall is between ``a[k]`` and ``b[k]``, both of shape (K, 2), metres."""
-    return cast(NDArray[np.bool_], _pairs(*_grid(grid), np.asarray(a, np.float64), np.asarray(b, np.float64)))
-
-
 def blocked_moves(grid: WallGrid, track: NDArray[Any]) -> int:
     """Count the moves that went through a wall, which must be none; ``track`` has shape (T, K, 2), metres."""
-    return int(_blocked(*_grid(grid), track))
+    return int(_blocked(*grid_arrays(grid), track))
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,7 +182,7 @@ def first_looks(
     """
     when, who = _none(targets.shape[1])
     _looks(
-        *_grid(grid),
+        *grid_arrays(grid),
         eyes,
         headings,
         lookers.reach,

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from discretize import WallGrid
 from geomsim.pursuit import HELD_UP, believed_capture
 from geomsim.seeds import Streams
 from geomsim.teamwork import Teamwork
 from geomsim.trials.experiment import Experiment
-from geomsim.trials.walls import WallGrid
 
 __all__ = ["TeamRun", "run_team"]
 

@@ -25,15 +25,14 @@ import numba
 import numpy as np
 import pymunk
 
-from discretize import CellMap, convex_cells
+from discretize import CellMap, WallGrid, convex_cells
+from discretize.raycast import free_line, grid_arrays
 from geomsim import Evader, Random, Sensor, Team, Timing
 from geomsim.trials.bank import Bank, meet
 from geomsim.trials.episodes import run_episodes
 from geomsim.trials.experiment import Experiment
-from geomsim.trials.kernels import _free, _grid
 from geomsim.trials.methods import Method
 from geomsim.trials.teamruns import TeamRun, run_team
-from geomsim.trials.walls import WallGrid
 from geomsim.walking import Routes
 from maps import read_plan
 from planners import AreaSpeedDegree
@@ -152,7 +151,7 @@ def _bare(grid, eyes, lines, marks, ends, ways, count, starts, steps, dice):
             y = lines[edge, leg, 1] + share * (lines[edge, leg + 1, 1] - lines[edge, leg, 1])
             for i in range(3):
                 ex, ey = eyes[t, i, 0], eyes[t, i, 1]
-                if math.hypot(x - ex, y - ey) < np.inf and _free(
+                if math.hypot(x - ex, y - ey) < np.inf and free_line(
                     walls, first, members, x0, y0, size, columns, rows, ex, ey, x, y
                 ):
                     seen += 1
@@ -175,7 +174,7 @@ def bare(told: Experiment, run: TeamRun, steps: int) -> float:
         ways[i, routes.neighbours[i].index(j)] = e
     count = np.array([len(row) for row in routes.neighbours])
     ends, starts = np.array([j for _, j in pairs]), np.array(told.hideouts)
-    grid = _grid(WallGrid.of(cells.plan.walls))
+    grid = grid_arrays(WallGrid.of(cells.plan.walls))
     dice = np.random.default_rng(1).integers(0, 2**31, 1_000_000)
     rest = (run.eyes, lines, marks, ends, ways, count)
     _bare(grid, *rest, starts[:2], 5, dice)

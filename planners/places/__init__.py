@@ -1,0 +1,6 @@
+"""A belief over places on checkpoint routes, on which the evader's motion is Markov and sight is a matrix."""
+
+from planners.places.placing import PlaceError, Places
+from planners.places.walking import StandingStill, Strolling
+
+__all__ = ["PlaceError", "Places", "StandingStill", "Strolling"]
