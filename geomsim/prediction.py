@@ -1,4 +1,4 @@
-"""Exact predictions of a scenario in the cell model: a floor plan's, or an edge list's."""
+"""Exact predictions of a scenario: of an edge list's, or a floor plan's in the cell model or by sight."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from geomsim.scenario import Scenario, read_scenario
 from geomsim.team import place_team
+from geomsim.watching import looks_every
 from maps import GeomsimError, PlanError
 from maps.texts import load_json
 from planners import (
@@ -43,6 +44,10 @@ class ScenarioPrediction:
         The number that people give to the first cell: 1, or 0 in an edge list.
     unit : str
         Of the times: "s", or "steps" in an edge list.
+    belief : {"cells", "places"}
+        What it is a prediction of: same-cell capture in the cell model, or capture by sight with a belief over places.
+    step : float
+        From one value of a survival curve to the next, in that unit.
     scenario : dict
         What it depends on.
     """
@@ -52,11 +57,15 @@ class ScenarioPrediction:
     bounds: tuple[float, ...] | None
     first: int
     unit: str
+    belief: str
+    step: float
     scenario: dict[str, Any]
 
 
 def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: bool = False) -> ScenarioPrediction:
     """Predict a scenario.
+
+    It is that of the cell model unless capture by sight is asked for.
 
     Parameters
     ----------
@@ -73,6 +82,8 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
         If the scenario cannot be read or predicted.
     """
     scenario = read_scenario(path, keys)
+    if scenario.capture == "sight" and "capture" in scenario.model_fields_set:
+        return _by_sight(scenario, everywhere=everywhere)
     if is_edge_list(scenario.plan):
         graph = read_edge_list(scenario.plan)
         if scenario.planner == "random":  # in unit time a wandering pursuer chooses as the evader does
@@ -92,7 +103,24 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
     except TooLargeError:
         bounds = None
     unit = "steps" if first == 0 else "s"
-    return ScenarioPrediction(name, predictions, bounds, first, unit, scenario.as_dict())
+    step = 1.0 if first == 0 else scenario.belief_step
+    told = scenario.as_dict() | {"capture": "cell"}
+    return ScenarioPrediction(name, predictions, bounds, first, unit, "cells", step, told)
+
+
+def _by_sight(scenario: Scenario, *, everywhere: bool) -> ScenarioPrediction:
+    from geomsim.sightprediction import predict_sight
+
+    if is_edge_list(scenario.plan):
+        raise GeomsimError(f"{scenario.plan} is a graph without walls, in which there is no capture by sight.")
+    plan, cells = scenario.place()
+    team, timing, motion = scenario.team(), scenario.timing(), scenario.belief_motion()
+    graph = SearchGraph.from_cells(cells)
+    starts = _common(graph, scenario.pursuers) if everywhere else [place_team(cells, team)]
+    speed = scenario.motion_speed or scenario.evader_speed
+    predictions = tuple(predict_sight(cells, team, start, motion, speed, timing, scenario.seed) for start in starts)
+    step = timing.physics_step * looks_every(timing.physics_step)
+    return ScenarioPrediction(plan.name, predictions, None, 1, "s", "places", step, scenario.as_dict())
 
 
 def is_edge_list(plan: str) -> bool:

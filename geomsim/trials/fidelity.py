@@ -45,7 +45,7 @@ class _Unknown:
 
 @dataclass(frozen=True, slots=True)
 class Forecast:
-    """The capture time in the cell model.
+    """A predicted capture time.
 
     Attributes
     ----------
@@ -55,15 +55,18 @@ class Forecast:
         Probability that the evader is free after each belief step.
     step : float
         Of the belief, seconds.
+    begin : float
+        Time of the first one, seconds.
     """
 
     mean: float
     free: NDArray[np.float64]
     step: float
+    begin: float = 0.0
 
     def gap(self, observed: Survival, limit: float) -> float:
         """Return the largest difference between the predicted and an observed curve, up to the time limit."""
-        at = self.step * np.arange(len(self.free))
+        at = self.begin + self.step * np.arange(len(self.free))
         at = at[at <= limit]
         seen = observed.free[np.searchsorted(observed.time, at + 1e-9, side="right") - 1]
         return float(np.abs(seen - self.free[: len(at)]).max())

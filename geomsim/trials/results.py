@@ -38,7 +38,7 @@ class MethodRun:
     seconds_per_decision : float
         The same for each decision of the planner, the belief and the bodies included.
     forecast : Forecast or None
-        What the cell model says.
+        What is predicted.
     """
 
     runs: int
@@ -58,7 +58,8 @@ class MethodSummary:
     observed : Sample
         What the trials say.
     predicted : float or None
-        Mean capture time in the cell model, seconds; None where that has no finite answer.
+        Predicted mean capture time, seconds: by a belief over places where capture is by sight, else in the cell
+        model; None where there is no finite answer.
     gap : float or None
         Largest difference between the predicted and the observed share captured, over time.
     difference : Difference or None

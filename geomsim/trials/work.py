@@ -14,6 +14,7 @@ from geomsim.trials.bank import Meetings, meet
 from geomsim.trials.episodes import run_episodes
 from geomsim.trials.experiment import Experiment, Row
 from geomsim.trials.fidelity import Forecast, forecast
+from geomsim.trials.foresight import foresee
 from geomsim.trials.results import MethodRun
 from geomsim.trials.store import Store
 from geomsim.trials.teamruns import TeamRun, run_team
@@ -30,6 +31,9 @@ _BLOCK = 500
 
 #: trials in a task of the separate engine
 _EPISODES = 8
+
+#: most team runs that a forecast of capture by sight is made by
+_FORESEEN = 50
 
 Progress = Callable[[str, int, int], None]
 """Told a method's name, how many of its trials are decided, and how many there are."""
@@ -93,12 +97,25 @@ class Work:
             self._take(found)
 
     def settle(self) -> None:
-        """Learn what does not depend on evaders: whether chance had a part, and what the cell model says."""
+        """Learn what does not depend on evaders: whether chance had a part, and what is predicted."""
         for m, method in enumerate(self.experiment.methods):
             last = max(row.time for row in self.rows.values() if row.method == method.name)
             reach = next(steps for steps in self.rounds() if steps * self.experiment.timing.physics_step >= last - 1e-6)
             self._run([(m, [0])], reach)
-        self.forecasts = dict(self.workforce.do(_numbered_forecast, [(self.experiment, m) for m in self.runs]))
+            if self.experiment.capture == "sight" and self.runs[m][0].drew:
+                self._run([(m, list(range(self._foreseen())))], reach)
+        tasks = [(self.experiment, m, self._ways(m)) for m in self.runs]
+        self.forecasts = dict(self.workforce.do(_numbered_forecast, tasks))
+
+    def _foreseen(self) -> int:
+        """Return how many runs of a team whose planner draws random numbers a forecast is made by."""
+        return min(self.experiment.team_runs, _FORESEEN)
+
+    def _ways(self, method: int) -> list[TeamRun]:
+        """Return the runs by which a forecast of capture by sight is made; none where capture is by cell."""
+        runs = self.runs[method]
+        count = self._foreseen() if runs[0].drew else 1
+        return [runs[r] for r in range(count)] if self.experiment.capture == "sight" else []
 
     def _run_teams(self, free: Mapping[int, list[int]], steps: int) -> None:
         """Make sure of the team runs that the free trials meet; the first run tells whether chance has a part."""
@@ -196,5 +213,5 @@ def _numbered_run(experiment: Experiment, method: int, runs: list[int], steps: i
     return method, run_team(experiment, method, runs, steps)
 
 
-def _numbered_forecast(experiment: Experiment, method: int) -> tuple[int, Forecast | None]:
-    return method, forecast(experiment, method)
+def _numbered_forecast(experiment: Experiment, method: int, ways: list[TeamRun]) -> tuple[int, Forecast | None]:
+    return method, foresee(experiment, ways) if ways else forecast(experiment, method)

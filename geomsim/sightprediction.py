@@ -1,0 +1,135 @@
+"""When a team will see the evader, without sampling evaders: its run in the world, and a belief over places."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from discretize import CellMap
+from geomsim.pursuit import Timing, believed_capture
+from geomsim.seeds import Streams, trial_seeds
+from geomsim.team import Team
+from geomsim.teamwork import Teamwork
+from geomsim.watching import Watch, expected_looks
+from planners import Decision, MotionModel, Planner, Policy, Prediction, SearchProblem, SearchState
+
+__all__ = ["predict_sight"]
+
+#: runs of a team whose planner draws random numbers; the prediction is their mean
+_RUNS = 20
+
+_RESIDUE = 1e-5
+
+
+def predict_sight(
+    cells: CellMap,
+    team: Team,
+    starts: Sequence[int],
+    motion: MotionModel,
+    speed: float,
+    timing: Timing,
+    seed: int,
+) -> Prediction:
+    """Return the distribution of the time to sight.
+
+    The team goes its ways in the world, which do not depend on an evader that it has not seen. A belief over places
+    follows, see :class:`geomsim.watching.Watch`. For a planner that draws no random numbers that is exact, as far as
+    places are; for others it is the mean of 20 runs.
+
+    Parameters
+    ----------
+    cells : CellMap
+        Where.
+    team : Team
+        Who searches.
+    starts : sequence of int
+        The cell in which each pursuer starts, counted from 0.
+    motion : MotionModel
+        What the team believes of the evader's motion. The evader of the prediction stands still if that is
+        ``StationaryMotion``, and else moves as the paper's does.
+    speed : float
+        Of the evader, metres a second.
+    timing : Timing
+        Clocks; the prediction ends at their limit.
+    seed : int
+        The planner's chance comes from it.
+
+    Returns
+    -------
+    Prediction
+        Its curve has a value for each look, at ``LOOK_STEP`` from each other.
+    """
+    watch = Watch(cells, motion, speed, timing.physics_step)
+    seeds = trial_seeds(seed, _RUNS)
+    runs = [_Run(watch, cells, team, starts, motion, timing, seeds[0])]
+    if runs[0].drew:
+        runs += [_Run(watch, cells, team, starts, motion, timing, one) for one in seeds[1:]]
+    length = max(len(run.curve) for run in runs)
+    free = np.mean([np.pad(run.curve, (0, length - len(run.curve)), mode="edge") for run in runs], axis=0)
+    mean = float(np.mean([expected_looks(run.curve, timing.limit / watch.step) for run in runs])) * watch.step
+    paths = runs[0].paths if len(runs) == 1 else ((),) * team.pursuers
+    return Prediction(tuple(starts), mean, free, paths, float(np.mean([run.seconds_per_plan for run in runs])))
+
+
+class _Run:
+    """One run of a team, followed until the evader is as good as seen."""
+
+    def __init__(
+        self,
+        watch: Watch,
+        cells: CellMap,
+        team: Team,
+        starts: Sequence[int],
+        motion: MotionModel,
+        timing: Timing,
+        seed: int,
+    ) -> None:
+        chance = Streams(seed).deciding
+        fresh, clocked = chance.bit_generator.state, _Clocked(team.planner)
+        timed = replace(team, planner=clocked)
+        work = Teamwork(cells, timed, starts, motion, believed_capture(team, timing), timing.belief_step, [chance])
+        looker = watch.lookout([team.sensor] * team.pursuers, watch.first_belief(starts))
+        curve: list[float] = []
+        for k in range(timing.steps):
+            work.step(k * timing.physics_step, timing.physics_step)
+            if (k + 1) % timing.steps_per_belief == 0:
+                work.learn()
+            if k % watch.every == 0:
+                curve.append(looker.look(work.positions[0], work.headings[0]))
+                if curve[-1] < _RESIDUE:
+                    break
+        self.curve, self.drew = np.array(curve), chance.bit_generator.state != fresh
+        gone: list[list[int]] = [[] for _ in starts]
+        for choice in work.choices:
+            gone[choice.pursuer].append(choice.path[0])
+        self.paths = tuple(map(tuple, gone))
+        self.seconds_per_plan = clocked.seconds / max(1, clocked.decisions)
+
+
+@dataclass(slots=True)
+class _Clocked:
+    """A planner whose decisions are timed."""
+
+    planner: Planner
+    seconds: float = 0.0
+    decisions: int = 0
+
+    def solve(self, problem: SearchProblem, rng: np.random.Generator) -> Policy:
+        """Prepare the planner's policy."""
+        return _ClockedPolicy(self, self.planner.solve(problem, rng))
+
+
+@dataclass(frozen=True, slots=True)
+class _ClockedPolicy:
+    clock: _Clocked
+    policy: Policy
+
+    def decide(self, state: SearchState) -> Sequence[Decision | None]:
+        begun = time.perf_counter()
+        decisions = self.policy.decide(state)
+        self.clock.seconds += time.perf_counter() - begun
+        self.clock.decisions += 1
+        return decisions
