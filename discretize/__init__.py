@@ -7,11 +7,12 @@ from discretize.checks import CellReport, check_cells
 from discretize.cutting import convex_cells
 from discretize.errors import DiscretizeError
 from discretize.exact import exact_cells
-from discretize.methods import METHODS, Method
+from discretize.methods import DEFAULT_METHOD, METHODS, Method
 from discretize.visibility import visibility_cells, visibility_count
 from discretize.wallgrid import WallGrid
 
 __all__ = [
+    "DEFAULT_METHOD",
     "METHODS",
     "CellMap",
     "CellReport",

@@ -76,6 +76,9 @@ class CellMap:
     radius: float
     method: str
     names: tuple[str, ...]
+    tolerance: float = 1.0
+    strict: bool = False
+    notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.cells)

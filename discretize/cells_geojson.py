@@ -10,10 +10,11 @@ from shapely.geometry import mapping, shape
 from shapely.geometry.base import BaseGeometry
 
 from discretize.cellmap import CellMap
-from discretize.checks import cover_problems
+from discretize.covering import cover_problems
 from discretize.cutting import connect_cells
 from discretize.errors import DiscretizeError
 from discretize.numbering import number_cells
+from discretize.partition import Partition
 from discretize.routes import ways_of
 from maps import FloorPlan, Label
 from maps.texts import load_json
@@ -122,7 +123,7 @@ def read_cells(path: Path, plan: FloorPlan, *, radius: float = 0.2) -> CellMap:
     wrong = cover_problems(plan, cells)
     if wrong:
         raise DiscretizeError(f"{path}: {wrong[0]}")
-    return connect_cells(plan, cells, names, ways_of(plan.space, radius), "file")
+    return connect_cells(plan, Partition(cells, 1.0, strict=False), names, ways_of(plan.space, radius), "file")
 
 
 def _feature(geometry: BaseGeometry, **properties: object) -> dict[str, Any]:
@@ -158,8 +159,6 @@ def _polygon(where: str, geometry: Any) -> shapely.Polygon | None:
         )
     if not shapely.is_valid(polygon):
         raise DiscretizeError(f"{where}: not a simple polygon ({shapely.is_valid_reason(polygon)}).")
-    if polygon.interiors:
-        raise DiscretizeError(f"{where}: a cell has no holes; this one has {len(polygon.interiors)}.")
     return polygon
 
 

@@ -1,6 +1,5 @@
 """What must hold for every cell map, checked afresh from its polygons."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,18 +7,14 @@ import shapely
 from numpy.typing import NDArray
 
 from discretize.cellmap import CellMap
+from discretize.covering import cover, cover_problems
 from discretize.cutting import blocked_doors
-from discretize.methods import METHODS
 from discretize.numbering import ignored_numbers
 from discretize.portals import find_openings
 from discretize.routes import Ways, ways_of
 from discretize.sharing import segment_tree
-from maps import FloorPlan
 
-__all__ = ["CellReport", "check_cells", "cover", "cover_problems"]
-
-_SHARE = 1e-9
-"""Share of the free space that may be left out or covered twice."""
+__all__ = ["CellReport", "check_cells"]
 
 _ROUND = 1e-12
 """Rounding of a cell's area against its hull's."""
@@ -46,6 +41,11 @@ class CellReport:
         Area that lies in a second cell or outside the free space, as a share of the free space.
     convexity : float
         Smallest area of a cell as a share of its convex hull's.
+    tolerance : float
+        Largest share of its convex hull that a cell may miss, as its method promises; 1 where nothing is promised.
+    beyond : tuple of int
+        Numbers, from 1, of the cells that miss more of it, judged by what a body can touch in them and with the
+        obstacles in them filled.
     free_components : int
         Connected parts of the places where the body's centre can be.
     graph_components : int
@@ -57,7 +57,8 @@ class CellReport:
     problems : tuple of str
         One sentence for everything that must hold and does not; empty for a sound map.
     notes : tuple of str
-        One sentence for what the plan says and the map does not follow: room numbers that are not those of cells.
+        One sentence for everything that was done otherwise than usual, for a tolerance that cells miss, and for room
+        numbers of the plan that are not those of cells.
     """
 
     cells: int
@@ -67,6 +68,8 @@ class CellReport:
     coverage: float
     overlap: float
     convexity: float
+    tolerance: float
+    beyond: tuple[int, ...]
     free_components: int
     graph_components: int
     pockets: tuple[int, ...]
@@ -92,6 +95,7 @@ def check_cells(cellmap: CellMap) -> CellReport:
     hulls = shapely.area(shapely.convex_hull(shapes))
     convexity = cellmap.areas / np.where(hulls > 0, hulls, 1.0)
     components = cellmap.components
+    beyond = _beyond(cellmap, convexity, ways)
     report = CellReport(
         cells=len(cellmap),
         portals=len(cellmap.portals),
@@ -100,68 +104,45 @@ def check_cells(cellmap: CellMap) -> CellReport:
         coverage=coverage,
         overlap=overlap,
         convexity=float(convexity.min(initial=1.0)),
+        tolerance=cellmap.tolerance,
+        beyond=beyond,
         free_components=len(ways.tight.parts),
         graph_components=len(np.unique(components[components >= 0])),
         pockets=tuple((np.flatnonzero(components < 0) + 1).tolist()),
         blocked_doors=tuple(k + 1 for k in blocked_doors(cellmap.plan, cellmap.portals)),
         problems=(),
-        notes=ignored_numbers(cellmap.cells, cellmap.plan.labels),
+        notes=(*cellmap.notes, *_tolerance_note(cellmap, beyond), *ignored_numbers(cellmap.cells, cellmap.plan.labels)),
     )
     problems = (*_shape_problems(cellmap, convexity), *_graph_problems(cellmap, report, ways))
     return CellReport(**{name: getattr(report, name) for name in report.__slots__} | {"problems": problems})
 
 
-def cover(plan: FloorPlan, cells: Sequence[shapely.Polygon]) -> tuple[float, float]:
-    """Share of the free space that cells cover, and share that they cover twice or beyond its walls.
-
-    Sums of areas and of what pairs of cells share: a union of thousands of cells would move vertices.
-    """
-    shapes, space = np.array(cells, dtype=object), shapely.set_precision(plan.space, 0)
-    i, j = _overlapping(cells)
-    twice = float(shapely.area(shapely.intersection(shapes[i], shapes[j])).sum())
-    shapely.prepare(space)
-    outside = float(shapely.area(shapely.difference(shapes[~shapely.covers(space, shapes)], space)).sum())
-    covered = float(shapely.area(shapes).sum()) - twice - outside
-    if twice > _SHARE * space.area:  # three cells may share a place
-        covered = float(shapely.intersection(shapely.union_all(shapes), space).area)
-    return min(covered / space.area, 1.0), (twice + outside) / space.area
+def _beyond(cellmap: CellMap, convexity: NDArray[np.float64], ways: Ways) -> tuple[int, ...]:
+    """Cells that miss more of their convex hull than is tolerated, by what a body can touch in them, from 1."""
+    numbers = []
+    for k in np.flatnonzero(convexity < 1 - cellmap.tolerance - _ROUND).tolist():
+        places = shapely.get_parts(ways.tight.within(cellmap.cells[k]).buffer(cellmap.radius))
+        outlines = [shapely.Polygon(place.exterior) for place in places if isinstance(place, shapely.Polygon)]
+        largest = max(outlines, key=shapely.area, default=None)
+        if largest is not None and largest.area < (1 - cellmap.tolerance) * largest.convex_hull.area:
+            numbers.append(k + 1)
+    return tuple(numbers)
 
 
-def cover_problems(plan: FloorPlan, cells: Sequence[shapely.Polygon]) -> list[str]:
-    """Say where cells leave out free space, cover it twice or lie outside it; empty where they do not."""
-    coverage, overlap = cover(plan, cells)
-    problems = []
-    if coverage < 1 - _SHARE:
-        left = shapely.difference(plan.space, shapely.union_all(np.array(cells, dtype=object)))
-        problems.append(f"{(1 - coverage) * plan.area:.3g} m² of the free space lie in no cell, {_place(left)}.")
-    if overlap > _SHARE:
-        shapes = np.array(cells, dtype=object)
-        i, j = _overlapping(cells)
-        both, beyond = shapely.intersection(shapes[i], shapes[j]), shapely.difference(shapes, plan.space)
-        place = _place(*both, *beyond)
-        problems.append(f"{overlap * plan.area:.3g} m² lie in two cells or outside the free space, {place}.")
-    return problems
-
-
-def _overlapping(cells: Sequence[shapely.Polygon]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Pairs of cells that meet, the first before the second."""
-    i, j = shapely.STRtree(list(cells)).query(np.array(cells, dtype=object), predicate="intersects")
-    return i[i < j], j[i < j]
-
-
-def _place(*geometries: shapely.Geometry) -> str:
-    """Words for where the largest piece of something is."""
-    pieces = shapely.get_parts(np.array(geometries, dtype=object))
-    point = shapely.point_on_surface(max(pieces, key=shapely.area))
-    return f"the most of it at ({shapely.get_x(point):.3f}, {shapely.get_y(point):.3f})"
+def _tolerance_note(cellmap: CellMap, beyond: tuple[int, ...]) -> tuple[str, ...]:
+    """Say which cells break the promise that they are nearly convex."""
+    if not beyond or cellmap.strict:
+        return ()
+    numbers = ", ".join(map(str, beyond))
+    return (f"{len(beyond)} of {len(cellmap)} cells miss more than {cellmap.tolerance:g} of their hulls: {numbers}.",)
 
 
 def _shape_problems(cellmap: CellMap, convexity: NDArray[np.float64]) -> list[str]:
-    promised = METHODS[cellmap.method].convexity if cellmap.method in METHODS else 0.0
+    promised = 1 - cellmap.tolerance if cellmap.strict else 0.0
     problems = [
         f"Cell {k + 1} is not one simple polygon."
         for k, cell in enumerate(cellmap.cells)
-        if not cell.is_valid or cell.is_empty or (cell.interiors and promised > 0)
+        if not cell.is_valid or cell.is_empty or (cell.interiors and cellmap.strict)
     ]
     problems += cover_problems(cellmap.plan, cellmap.cells)
     problems += [

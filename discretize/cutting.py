@@ -1,14 +1,17 @@
 """Floor plan to cell map: the one entry, whatever the method."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import shapely
 
 from discretize.cellmap import CellMap, Portal
 from discretize.errors import DiscretizeError
-from discretize.methods import METHODS
+from discretize.methods import DEFAULT_METHOD, METHODS
 from discretize.numbering import number_cells
+from discretize.parting import part_cells
+from discretize.partition import Partition
 from discretize.portals import find_checkpoints, find_portals
 from discretize.routes import Ways, ways_of
 from discretize.sharing import shared_segments
@@ -24,7 +27,7 @@ _BESIDE = 0.01
 """A portal whose segment comes this near to the middle of a door is that door's, metres."""
 
 
-def convex_cells(plan: FloorPlan, *, method: str = "exact", radius: float = 0.2) -> CellMap:
+def convex_cells(plan: FloorPlan, *, method: str = DEFAULT_METHOD, radius: float = 0.2) -> CellMap:
     """Cut a floor plan into convex cells, with the portals and routes that a round body can use.
 
     Parameters
@@ -50,22 +53,24 @@ def convex_cells(plan: FloorPlan, *, method: str = "exact", radius: float = 0.2)
             "possible."
         )
     ways = ways_of(plan.space, radius)
-    way = METHODS[method]
-    cells, names = number_cells(split_bottlenecks(way.cut(plan), ways.tight, way.convexity), plan.labels)
-    return connect_cells(plan, cells, names, ways, method)
+    cut = METHODS[method].cut(plan)
+    if cut.strict:
+        cells = split_bottlenecks(cut.cells, ways.tight, 1 - cut.tolerance)
+    else:
+        cells = part_cells(cut.cells, ways.tight)
+    cells, names = number_cells(cells, plan.labels)
+    return connect_cells(plan, replace(cut, cells=cells), names, ways, method)
 
 
-def connect_cells(
-    plan: FloorPlan, cells: Sequence[shapely.Polygon], names: Sequence[str], ways: Ways, method: str
-) -> CellMap:
+def connect_cells(plan: FloorPlan, cut: Partition, names: Sequence[str], ways: Ways, method: str) -> CellMap:
     """Find checkpoints, portals and routes of given cells.
 
     Parameters
     ----------
     plan : FloorPlan
         What was cut.
-    cells : sequence of shapely.Polygon
-        N cells in their order, metres.
+    cut : Partition
+        N cells in their order.
     names : sequence of str
         One for each.
     ways : Ways
@@ -79,6 +84,7 @@ def connect_cells(
         If the body fits nowhere, through none of the plan's doors, or from no cell into another.
     """
     radius = ways.tight.radius
+    cells = cut.cells
     if not ways.tight.parts:
         raise DiscretizeError(f"A body {2 * radius:.3g} m across does not fit anywhere in plan {plan.name!r}.")
     checkpoints = find_checkpoints(cells, ways)
@@ -91,7 +97,9 @@ def connect_cells(
             f"{plan.name!r}: the widest is {widest:.3g} m."
         )
     checkpoints.setflags(write=False)
-    return CellMap(plan, tuple(cells), portals, checkpoints, radius, method, tuple(names))
+    return CellMap(
+        plan, tuple(cells), portals, checkpoints, radius, method, tuple(names), cut.tolerance, cut.strict, cut.notes
+    )
 
 
 def blocked_doors(plan: FloorPlan, portals: Sequence[Portal]) -> tuple[int, ...]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from discretize import CellMap
 from maps import FloorPlan
 
-__all__ = ["Episode", "Outcome", "Status"]
+__all__ = ["Capture", "Episode", "Outcome", "Status"]
 
 
 class Status(Enum):
@@ -25,8 +25,33 @@ class Status(Enum):
 
 
 @dataclass(frozen=True, slots=True)
+class Capture:
+    """One evader's capture.
+
+    Attributes
+    ----------
+    evader : int
+        Who was captured, counted from 0.
+    time : float
+        When, seconds.
+    pursuer : int
+        By whom, counted from 0.
+    position : tuple of float
+        Where the evader was, metres.
+    cell : int
+        In which cell, counted from 0.
+    """
+
+    evader: int
+    time: float
+    pursuer: int
+    position: tuple[float, float]
+    cell: int
+
+
+@dataclass(frozen=True, slots=True)
 class Outcome:
-    """The result of a pursuit.
+    """The result of a pursuit. With several evaders it ends, and counts as captured, when the last one is captured.
 
     Attributes
     ----------
@@ -45,6 +70,10 @@ class Outcome:
         capture, so where capture is by sight it predicts less than happens.
     notes : tuple of str
         What a person should know of the run, a sentence each; a body that was held up, for instance.
+    evader : int
+        Which one was captured last, counted from 0.
+    earlier : tuple of Capture
+        Captures of other evaders before that, in the order of time.
     """
 
     status: Status
@@ -54,16 +83,25 @@ class Outcome:
     cell: int | None
     predicted: float
     notes: tuple[str, ...] = ()
+    evader: int = 0
+    earlier: tuple[Capture, ...] = ()
+
+    @property
+    def captures(self) -> tuple[Capture, ...]:
+        """All captures, in the order of time."""
+        if self.pursuer is None or self.position is None or self.cell is None:
+            return self.earlier
+        return (*self.earlier, Capture(self.evader, self.time, self.pursuer, self.position, self.cell))
 
     @property
     def captured(self) -> bool:
-        """Whether the evader was captured."""
+        """Whether every evader was captured."""
         return self.status is Status.CAPTURED
 
 
 @dataclass(frozen=True, slots=True)
 class Episode:
-    """A whole pursuit of R pursuers, T physics steps, B belief steps, N cells and K decisions.
+    """A whole pursuit of R pursuers, E evaders, T physics steps, B belief steps, N cells and K decisions.
 
     Attributes
     ----------
@@ -81,14 +119,17 @@ class Episode:
         Directions of travel, radians, counterclockwise from the x axis; a robot that stands keeps its last one.
     pursuer_cells : ndarray of int32, shape (T, R)
         Cell that each pursuer is in, counted from 0.
-    evader : ndarray, shape (T, 2)
-        Positions, metres.
-    evader_cells : ndarray of int32, shape (T,)
-        Cell that the evader is in, counted from 0.
+    evaders : ndarray, shape (T, E, 2)
+        Positions, metres; a captured one stays where it was.
+    evaders_cells : ndarray of int32, shape (T, E)
+        Cell that each evader is in, counted from 0.
     belief_times : ndarray, shape (B,)
         Seconds; the first is 0.
     beliefs : ndarray, shape (B, N + 1)
-        Belief after each of its steps; index 0 is the capture state.
+        Belief after each of its steps, by the looks of all robots, on an evader that is still free; index 0 is the
+        capture state.
+    own_beliefs : ndarray, shape (B, R, N + 1)
+        The same by the looks that each robot knows of; shape (B, 0, N + 1) where one planner plans for all.
     decision_times : ndarray, shape (K,)
         When a pursuer chose a path, seconds, not falling.
     decision_pursuers : ndarray of int32, shape (K,)
@@ -106,17 +147,32 @@ class Episode:
     pursuers: NDArray[np.float64]
     headings: NDArray[np.float64]
     pursuer_cells: NDArray[np.int32]
-    evader: NDArray[np.float64]
-    evader_cells: NDArray[np.int32]
+    evaders: NDArray[np.float64]
+    evaders_cells: NDArray[np.int32]
     belief_times: NDArray[np.float64]
     beliefs: NDArray[np.float64]
+    own_beliefs: NDArray[np.float64]
     decision_times: NDArray[np.float64]
     decision_pursuers: NDArray[np.int32]
     decision_paths: tuple[NDArray[np.int32], ...]
     outcome: Outcome
 
+    @property
+    def evader(self) -> NDArray[np.float64]:
+        """Positions of the first evader, shape (T, 2), metres."""
+        return self.evaders[:, 0]
+
+    @property
+    def evader_cells(self) -> NDArray[np.int32]:
+        """Cell that the first evader is in, counted from 0, shape (T,)."""
+        return self.evaders_cells[:, 0]
+
     def __str__(self) -> str:
-        out = self.outcome
+        out, evaders = self.outcome, self.evaders.shape[1]
+        if evaders > 1:
+            last = max((capture.time for capture in out.captures), default=0.0)
+            told = f"{len(out.captures)} of {evaders} evaders captured"
+            return f"{told}, the last one after {last:.1f} s" if out.captured else f"{told} in {out.time:.1f} s"
         if out.captured and out.pursuer is not None and out.cell is not None:
             return f"captured after {out.time:.1f} s by pursuer {out.pursuer + 1}, in cell {out.cell + 1}"
         return f"{out.status.value}, {out.time:.1f} s"

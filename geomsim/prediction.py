@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from geomsim.believing import believed_problem
 from geomsim.scenario import Scenario, read_scenario
 from geomsim.team import place_team
 from geomsim.watching import looks_every
@@ -15,9 +16,7 @@ from maps import GeomsimError, PlanError
 from maps.texts import load_json
 from planners import (
     Prediction,
-    SameCell,
     SearchGraph,
-    SearchProblem,
     TooLargeError,
     lower_bounds,
     predict,
@@ -92,14 +91,16 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
         starts = _common(graph, scenario.pursuers) if everywhere else [_vertices(scenario, graph)]
     else:
         plan, cells = scenario.place()
-        graph = SearchGraph.from_cells(cells)
-        speeds = (scenario.speed,) * scenario.pursuers
-        problem = SearchProblem(graph, scenario.belief_motion(), SameCell(), speeds, scenario.belief_step)
+        team = scenario.team()
+        _, problem = believed_problem(cells, team, scenario.belief_motion(), scenario.belief_step)
         first, name = 1, plan.name
-        starts = _common(graph, scenario.pursuers) if everywhere else [place_team(cells, scenario.team())]
-    predictions = predict(problem, scenario.method_of_planning(), starts, np.random.default_rng(scenario.seed))
+        graph = problem.graph
+        common = [start for start in _common(graph, scenario.pursuers) if start[0] < len(cells)]
+        starts = common if everywhere else [place_team(cells, team)]
+    chance, reachable = np.random.default_rng(scenario.seed), first == 1
+    predictions = predict(problem, scenario.method_of_planning(), starts, chance, reachable=reachable)
     try:
-        bounds = lower_bounds(problem, starts)
+        bounds = lower_bounds(problem, starts, reachable=reachable)
     except TooLargeError:
         bounds = None
     unit = "steps" if first == 0 else "s"

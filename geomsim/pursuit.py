@@ -1,25 +1,20 @@
-"""The episode loop: Algorithm 1 of Hollinger, Kehagias and Singh, in a continuous world."""
+"""Running a pursuit: what it takes, and what is refused before it begins."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from discretize import CellMap
-from geomsim.episode import Episode, Outcome, Status
-from geomsim.quarry import Quarry
-from geomsim.seeds import Streams
-from geomsim.team import Evader, Team, place_evader, place_team
-from geomsim.teamwork import Teamwork
+from geomsim.chase import HELD_UP, Chase
+from geomsim.episode import Episode
+from geomsim.team import Evader, Team
 from maps import FloorPlan, GeomsimError, nearest
-from planners import AreaSpeedDegree, CaptureModel, MotionModel, SameCell, SearchGraph
+from planners import AreaSpeedDegree, MotionModel, SearchGraph
 
-__all__ = ["CAPTURE_RULES", "HELD_UP", "Timing", "believed_capture", "check_pursuit", "run_episode"]
+__all__ = ["CAPTURE_RULES", "HELD_UP", "Timing", "check_pursuit", "run_episode"]
 
 CAPTURE_RULES = {
     "sight": "a pursuer has a free line of sight to the evader, within its range and field of view",
@@ -31,9 +26,6 @@ MOST_POSITIONS = 20_000_000
 
 #: belief steps that a pursuer may need for the longest way between two checkpoints: planners look at each of them
 MOST_BELIEF_STEPS = 10_000
-
-#: a body that is held up for so long is reported, seconds
-HELD_UP = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +85,7 @@ def run_episode(
     scenario: dict[str, Any] | None = None,
     progress: Callable[[float, float], None] | None = None,
 ) -> Episode:
-    """Run one pursuit until the evader is captured or time is up.
+    """Run one pursuit until all evaders are captured or time is up.
 
     Every physics step the bodies move and each pursuer looks; every belief step ``p <- p P prod_i C_i`` (Eq. 3);
     pursuers that come to a checkpoint decide anew. Ctrl-C ends the pursuit and returns what there is of it.
@@ -111,7 +103,7 @@ def run_episode(
     team_seed : int, optional
         Where the planner's chance comes from, if not from ``seed``; the evader's always comes from ``seed``.
     capture : {"sight", "cell"}
-        What counts as capture, see ``CAPTURE_RULES``. The belief counts on same-cell capture either way (Section V).
+        What counts as capture, see ``CAPTURE_RULES``. What the belief counts on is the team's, ``Team.believes``.
     motion : MotionModel, optional
         What the pursuers believe of the evader's motion; by default area, degree and its own speed (Section V).
     timing : Timing, optional
@@ -133,13 +125,13 @@ def run_episode(
     _check_steps(team, evader, timing)
     _check_hops(SearchGraph.from_cells(cells), team, timing)
     seeds = seed, seed if team_seed is None else team_seed
-    pursuit = _Pursuit(plan, cells, team, evader, seeds, capture, motion or AreaSpeedDegree(evader.speed), timing)
-    outcome = pursuit.run(progress)
+    chase = Chase(cells, team, evader, seeds, capture, motion or AreaSpeedDegree(evader.speed), timing)
+    outcome = chase.run(progress)
     if scenario is None:
         from geomsim.scenario import describe
 
         scenario = describe(plan, cells, team, evader, seed, capture, motion, timing)
-    return pursuit.log.episode(scenario, plan, cells, outcome)
+    return chase.log.episode(scenario, plan, cells, outcome)
 
 
 def check_pursuit(cells: CellMap, team: Team, evader: Evader, capture: str) -> None:
@@ -155,18 +147,19 @@ def check_pursuit(cells: CellMap, team: Team, evader: Evader, capture: str) -> N
 
 def _check_steps(team: Team, evader: Evader, timing: Timing) -> None:
     """Refuse clocks with which a body would miss walls, or a pursuit would outgrow memory or patience."""
-    for who, speed, radius in (("pursuer", team.speed, team.radius), ("evader", evader.speed, evader.radius)):
+    bodies = (("pursuer", max(team.speeds), team.radius), ("evader", evader.speed, evader.radius))
+    for who, speed, radius in bodies:
         if speed * timing.physics_step > radius:
             raise GeomsimError(
                 f"The {who} of radius {radius:g} m would move {speed * timing.physics_step:g} m, more than that, in "
                 f"a physics step of {timing.physics_step:g} s and might miss a wall: make the step shorter, the body "
                 "slower or larger."
             )
-    bodies = team.pursuers + 1
-    positions = timing.limit / timing.physics_step * bodies
+    count = team.pursuers + evader.count
+    positions = timing.limit / timing.physics_step * count
     if positions > MOST_POSITIONS:
         raise GeomsimError(
-            f"A pursuit of {timing.limit:g} s in steps of {timing.physics_step:g} s with {bodies} bodies may come to "
+            f"A pursuit of {timing.limit:g} s in steps of {timing.physics_step:g} s with {count} bodies may come to "
             f"{positions:.3g} recorded positions, but {MOST_POSITIONS:,} are the most: make the time limit shorter or "
             "the physics step longer."
         )
@@ -174,145 +167,10 @@ def _check_steps(team: Team, evader: Evader, timing: Timing) -> None:
 
 def _check_hops(graph: SearchGraph, team: Team, timing: Timing) -> None:
     """Refuse belief steps so short, or pursuers so slow, that planning for the next cell would take for ever."""
-    steps = float(graph.length.max(initial=0.0)) / team.speed / timing.belief_step
+    slowest = min(team.speeds)
+    steps = float(graph.length.max(initial=0.0)) / slowest / timing.belief_step
     if steps > MOST_BELIEF_STEPS:
         raise GeomsimError(
-            f"A pursuer of {team.speed:g} m/s needs up to {steps:.3g} belief steps of {timing.belief_step:g} s from "
+            f"A pursuer of {slowest:g} m/s needs up to {steps:.3g} belief steps of {timing.belief_step:g} s from "
             f"one cell to the next, but {MOST_BELIEF_STEPS:,} are the most: make the belief step longer."
         )
-
-
-@dataclass(slots=True)
-class _Log:
-    """What has happened so far."""
-
-    times: list[float] = field(default_factory=list)
-    positions: list[NDArray[np.float64]] = field(default_factory=list)
-    headings: list[NDArray[np.float64]] = field(default_factory=list)
-    occupied: list[list[int]] = field(default_factory=list)
-    belief_times: list[float] = field(default_factory=list)
-    beliefs: list[NDArray[np.float64]] = field(default_factory=list)
-    decisions: list[tuple[float, int, tuple[int, ...]]] = field(default_factory=list)
-
-    def episode(self, scenario: dict[str, Any], plan: FloorPlan, cells: CellMap, outcome: Outcome) -> Episode:
-        """Make the record; the evader is the last of the bodies. Ctrl-C may have left some lists one entry longer."""
-        n, b = len(self.times), len(self.beliefs)
-        positions, occupied = np.array(self.positions[:n]), np.array(self.occupied[:n], dtype=np.int32)
-        return Episode(
-            scenario=scenario,
-            plan=plan,
-            cells=cells,
-            times=np.array(self.times),
-            pursuers=positions[:, :-1],
-            headings=np.array(self.headings[:n]),
-            pursuer_cells=occupied[:, :-1],
-            evader=positions[:, -1],
-            evader_cells=occupied[:, -1],
-            belief_times=np.array(self.belief_times[:b]),
-            beliefs=np.array(self.beliefs),
-            decision_times=np.array([time for time, _, _ in self.decisions]),
-            decision_pursuers=np.array([who for _, who, _ in self.decisions], dtype=np.int32),
-            decision_paths=tuple(np.array(path, dtype=np.int32) for _, _, path in self.decisions),
-            outcome=outcome,
-        )
-
-
-class _Pursuit:
-    """A running episode: the team at work, and the evader."""
-
-    def __init__(
-        self,
-        plan: FloorPlan,
-        cells: CellMap,
-        team: Team,
-        evader: Evader,
-        seeds: tuple[int, int],
-        capture: str,
-        motion: MotionModel,
-        timing: Timing,
-    ) -> None:
-        theirs, ours = Streams(seeds[0]), Streams(seeds[1])
-        starts = place_team(cells, team)
-        hideout = place_evader(cells, evader, starts, theirs.placing)
-        self.team, self.capture, self.timing = team, capture, timing
-        believed = believed_capture(team, timing)
-        self.work = Teamwork(cells, team, starts, motion, believed, timing.belief_step, [ours.deciding])
-        self.quarry = Quarry(plan.walls, self.work.routes, evader, [hideout], [theirs.moving])
-        self.patience = theirs.noticing.exponential(size=team.pursuers)
-        self.looked = np.zeros(team.pursuers)
-        self.held_up: set[int] = set()
-        self.log = _Log()
-
-    def run(self, progress: Callable[[float, float], None] | None) -> Outcome:
-        """Step until capture, the time limit or Ctrl-C."""
-        steps, dt = self.timing.steps, self.timing.physics_step
-        status, captor = Status.TIME_LIMIT, None
-        self._note(0.0)
-        self._believe(0.0)
-        try:
-            captor = self._captor()
-            for k in range(steps):
-                if captor is not None:
-                    break
-                self.quarry.robots = self.work.positions[0]
-                self.work.step(k * dt, dt)
-                self.quarry.step(dt)
-                time = round((k + 1) * dt, 6)  # 0.3, not 0.30000000000000004
-                self._note(time)
-                if (k + 1) % self.timing.steps_per_belief == 0:
-                    self.work.learn()
-                    self._believe(time)
-                    if progress is not None:
-                        progress(time, float(self.work.beliefs[0, 0]))
-                captor = self._captor()
-        except KeyboardInterrupt:
-            status = Status.INTERRUPTED
-        return self._outcome(Status.CAPTURED if captor is not None else status, captor)
-
-    def _note(self, time: float) -> None:
-        self.log.headings.append(self.work.headings[0])
-        self.log.positions.append(np.concatenate([self.work.positions[0], self.quarry.positions]))
-        self.log.occupied.append([*self.work.cells[0].tolist(), *self.quarry.cells.tolist()])
-        self.log.times.append(time)
-        idle = np.concatenate([self.work.idle[0], self.quarry.idle])
-        self.held_up.update(np.flatnonzero(idle >= HELD_UP).tolist())
-
-    def _believe(self, time: float) -> None:
-        self.log.belief_times.append(time)
-        self.log.beliefs.append(self.work.beliefs[0])
-
-    def _captor(self) -> int | None:
-        # evaders are kept in single precision where thousands are, and a robot must see the same in both cases
-        target = self.quarry.positions[0].astype(np.float32).astype(np.float64)
-        hidden = int(self.quarry.cells[0])
-        for i, (eye, cell) in enumerate(zip(self.work.positions[0], self.work.cells[0].tolist(), strict=True)):
-            if self.capture == "cell":
-                looks = cell == hidden
-            else:
-                looks = self.team.sensor.sees(self.quarry.world, eye, float(self.work.headings[0, i]), target)
-            if looks:
-                self.looked[i] += self.team.sensor.attention * self.timing.physics_step
-                if self.looked[i] >= self.patience[i]:
-                    return i
-        return None
-
-    def _outcome(self, status: Status, captor: int | None) -> Outcome:
-        captured, last = status is Status.CAPTURED, len(self.log.times) - 1
-        x, y = self.log.positions[last][-1].tolist()
-        names = [f"Pursuer {i + 1}" for i in range(self.team.pursuers)] + ["The evader"]
-        notes = tuple(f"{names[k]} was held up at a wall for {HELD_UP:g} s or more." for k in sorted(self.held_up))
-        self.log.decisions = [(choice.time, choice.pursuer, choice.path) for choice in self.work.choices]
-        return Outcome(
-            status=status,
-            time=self.log.times[last],
-            pursuer=captor,
-            position=(x, y) if captured else None,
-            cell=self.log.occupied[last][-1] if captured else None,
-            predicted=float(self.log.beliefs[-1][0]),
-            notes=notes,
-        )
-
-
-def believed_capture(team: Team, timing: Timing) -> CaptureModel:
-    """Return what a team believes to catch: its own cell, as likely in a belief step as its sensor notices in one."""
-    return SameCell(-math.expm1(-team.sensor.attention * timing.belief_step))

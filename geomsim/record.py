@@ -7,6 +7,7 @@ import json
 import zipfile
 import zlib
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ import shapely
 from numpy.typing import NDArray
 
 from discretize import CellMap, Portal
-from geomsim.episode import Episode, Outcome, Status
+from geomsim.episode import Capture, Episode, Outcome, Status
 from geomsim.files import replacing
 from geomsim.recordchecks import PLAIN, check_shapes, check_types, check_values
 from maps import FloorPlan, GeomsimError, Label, Repair
@@ -23,8 +24,9 @@ from maps import FloorPlan, GeomsimError, Label, Repair
 __all__ = ["FORMAT", "RecordError", "read_record", "write_record"]
 
 #: raised by one whenever a reader of the format before would misread a record
-FORMAT = 1
+FORMAT = 2
 _KIND = "geomsim episode"
+_ABOUT_CELLS = ("radius", "method", "names", "tolerance", "strict", "notes")
 
 
 class RecordError(GeomsimError):
@@ -62,6 +64,8 @@ def write_record(episode: Episode, path: Path) -> Path:
             "cell": outcome.cell,
             "predicted": outcome.predicted,
             "notes": outcome.notes,
+            "evader": outcome.evader,
+            "earlier": [asdict(capture) for capture in outcome.earlier],
         },
     }
     arrays["meta"] = _text(meta)
@@ -124,6 +128,8 @@ def _episode(arrays: Mapping[str, NDArray[Any]], meta: dict[str, Any]) -> Episod
         cell=told["cell"],
         predicted=float(told["predicted"]),
         notes=tuple(told["notes"]),
+        evader=int(told["evader"]),
+        earlier=tuple(_capture(**capture) for capture in told["earlier"]),
     )
     return Episode(
         scenario=meta["scenario"],
@@ -133,6 +139,10 @@ def _episode(arrays: Mapping[str, NDArray[Any]], meta: dict[str, Any]) -> Episod
         outcome=outcome,
         **{name: arrays[name] for name in PLAIN},
     )
+
+
+def _capture(evader: int, time: float, pursuer: int, position: Sequence[float], cell: int) -> Capture:
+    return Capture(int(evader), float(time), int(pursuer), (float(position[0]), float(position[1])), int(cell))
 
 
 def _text(value: object) -> NDArray[np.str_]:
@@ -193,7 +203,7 @@ def _pack_cells(cells: CellMap) -> dict[str, NDArray[Any]]:
     legs, splits = _join([leg for portal in cells.portals for leg in portal.legs], np.dtype(np.float64))
     return {
         "cells": _wkb(cells.cells),
-        "cells_about": _text({"radius": cells.radius, "method": cells.method, "names": cells.names}),
+        "cells_about": _text({key: getattr(cells, key) for key in _ABOUT_CELLS}),
         "checkpoints": cells.checkpoints,
         "portal_cells": np.array(cells.edges, dtype=np.int32).reshape(-1, 2),
         "portal_segments": np.array([portal.segment for portal in cells.portals]).reshape(-1, 2, 2),
@@ -222,4 +232,7 @@ def _unpack_cells(arrays: Mapping[str, NDArray[Any]], plan: FloorPlan) -> CellMa
         radius=float(about["radius"]),
         method=about["method"],
         names=tuple(about["names"]),
+        tolerance=float(about["tolerance"]),
+        strict=bool(about["strict"]),
+        notes=tuple(about["notes"]),
     )

@@ -19,10 +19,11 @@ PLAIN = {
     "pursuers": np.float64,
     "headings": np.float64,
     "pursuer_cells": np.int32,
-    "evader": np.float64,
-    "evader_cells": np.int32,
+    "evaders": np.float64,
+    "evaders_cells": np.int32,
     "belief_times": np.float64,
     "beliefs": np.float64,
+    "own_beliefs": np.float64,
     "decision_times": np.float64,
     "decision_pursuers": np.int32,
 }
@@ -54,15 +55,18 @@ def check_shapes(episode: Episode) -> None:
     t, b, k = (a.size for a in (episode.times, episode.belief_times, episode.decision_times))
     n = len(episode.cells)
     r = episode.pursuers.shape[1] if episode.pursuers.ndim == 3 else -1
+    e = episode.evaders.shape[1] if episode.evaders.ndim == 3 else -1
+    minds = r if episode.own_beliefs.size else 0
     expected = {
         "times": (t,),
         "pursuers": (t, r, 2),
         "headings": (t, r),
         "pursuer_cells": (t, r),
-        "evader": (t, 2),
-        "evader_cells": (t,),
+        "evaders": (t, e, 2),
+        "evaders_cells": (t, e),
         "belief_times": (b,),
         "beliefs": (b, n + 1),
+        "own_beliefs": (b, minds, n + 1),
         "decision_times": (k,),
         "decision_pursuers": (k,),
     }
@@ -72,35 +76,41 @@ def check_shapes(episode: Episode) -> None:
             raise ValueError(f"{name} has shape {found}, not {shape}")
     if episode.cells.checkpoints.shape != (n, 2) or len(episode.cells.names) != n:
         raise ValueError(f"there are {n} cells, but not as many checkpoints and names")
-    if t == 0 or b == 0 or r < 1 or len(episode.decision_paths) != k:
-        raise ValueError("it holds no time steps, no pursuers or too few paths")
+    if t == 0 or b == 0 or r < 1 or e < 1 or len(episode.decision_paths) != k:
+        raise ValueError("it holds no time steps, no pursuers, no evader or too few paths")
 
 
 def check_values(episode: Episode) -> None:
     """Raise a ValueError if times fall, or numbers of cells, places or probabilities are out of range."""
-    n, r, out = len(episode.cells), episode.pursuers.shape[1], episode.outcome
+    n, out = len(episode.cells), episode.outcome
+    r, e = episode.pursuers.shape[1], episode.evaders.shape[1]
     for name in ("times", "belief_times", "decision_times"):
         times = getattr(episode, name)
         if np.any(np.diff(times, prepend=0.0) < 0):
             raise ValueError(f"{name} fall")
     numbers = {
         "pursuer_cells": (episode.pursuer_cells, n),
-        "evader_cells": (episode.evader_cells, n),
+        "evaders_cells": (episode.evaders_cells, n),
         "decision_pursuers": (episode.decision_pursuers, r),
         "decision_paths": (np.concatenate([*episode.decision_paths, np.empty(0, np.int32)]), n),
         "portals": (np.array(episode.cells.edges, dtype=np.int32), n),
         "the outcome's cell": (_if_any(out.cell), n),
         "the outcome's pursuer": (_if_any(out.pursuer), r),
+        "the captures' cells": (np.array([capture.cell for capture in out.earlier], np.int32), n),
+        "the captures' pursuers": (np.array([capture.pursuer for capture in out.earlier], np.int32), r),
+        "the captures' evaders": (np.array([out.evader, *(c.evader for c in out.earlier)], np.int32), e),
     }
     for name, (found, count) in numbers.items():
         if np.any((found < 0) | (found >= count)):
             raise ValueError(f"{name} holds numbers that are not from 0 to {count - 1}")
-    if np.any((episode.beliefs < 0) | (episode.beliefs > 1 + 1e-6)):
-        raise ValueError("beliefs holds numbers that are no probabilities")
+    for name in ("beliefs", "own_beliefs"):
+        values = getattr(episode, name)
+        if np.any((values < 0) | (values > 1 + 1e-6)):
+            raise ValueError(f"{name} holds numbers that are no probabilities")
     if not all(isinstance(cell, shapely.Polygon) and not cell.is_empty for cell in episode.cells.cells):
         raise ValueError("a cell is no polygon")
     x0, y0, x1, y1 = episode.plan.bounds
-    places = np.concatenate([episode.pursuers.reshape(-1, 2), episode.evader])
+    places = np.concatenate([episode.pursuers.reshape(-1, 2), episode.evaders.reshape(-1, 2)])
     if np.any((places < (x0, y0)) | (places > (x1, y1))):
         raise ValueError("a robot or the evader is outside the plan")
 

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from discretize import CellMap, convex_cells, read_cells
+from discretize import DEFAULT_METHOD, CellMap, convex_cells, read_cells
+from geomsim.communication import LINKS, Communication
 from geomsim.evaders import EVADERS, make_evader_model
 from geomsim.pursuit import CAPTURE_RULES, Timing
 from geomsim.sensing import Sensor
-from geomsim.team import Evader, Team
+from geomsim.team import BELIEVED_CAPTURES, Evader, Team
 from maps import FloorPlan, GeomsimError, bundled_names, nearest, read_plan
 from maps.texts import read_text
 from planners import (
+    CHECKPOINTS,
     PLANNERS,
     AreaSpeedDegree,
+    DwellTime,
     MotionModel,
     Planner,
     StationaryMotion,
@@ -37,17 +40,22 @@ class ScenarioError(GeomsimError):
 #: what a team may believe of the evader's motion, by name
 MOTIONS: dict[str, Callable[[float], MotionModel]] = {
     "area-speed-degree": AreaSpeedDegree,
+    "dwell-time": DwellTime,
     "uniform": lambda _: UniformMotion(),
     "stationary": lambda _: StationaryMotion(),
 }
 
 _Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+_Reach = Annotated[float, Field(gt=0)]
+_Degrees = Annotated[float, Field(gt=0, le=360)]
+_Share = Annotated[float, Field(gt=0, le=1)]
 
 
 class Scenario(BaseModel):
     """Everything that a run depends on. Each key is also a flag of the command line, with dashes.
 
-    Lengths in metres, times in seconds, cell numbers as in the pictures, from 1.
+    Lengths in metres, times in seconds, cell numbers as in the pictures, from 1. Where a robot's quantity is a list, it
+    has one value for each robot.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
@@ -64,19 +72,24 @@ class Scenario(BaseModel):
     cost: str | None = None
     depth: Annotated[int, Field(ge=1)] | None = None
     options: dict[str, bool | int | float | str] = {}
+    checkpoints: str = "centroids"
+    communication: str = "central"
+    communication_range: _Positive | None = None
     capture: str = "sight"
-    range: Annotated[float, Field(gt=0)] = math.inf
-    fov_degrees: Annotated[float, Field(gt=0, le=360)] = 360.0
-    detection: Annotated[float, Field(gt=0, le=1)] = 1.0
-    speed: _Positive = 1.0
+    belief_capture: str = "cell"
+    range: _Reach | tuple[_Reach, ...] = math.inf
+    fov_degrees: _Degrees | tuple[_Degrees, ...] = 360.0
+    detection: _Share | tuple[_Share, ...] = 1.0
+    speed: _Positive | tuple[_Positive, ...] = 1.0
     radius: _Positive = 0.2
+    evaders: Annotated[int, Field(ge=1, le=100)] = 1
     evader: str = "centroid-boundary"
     evader_start: int | None = None
     evader_speed: _Positive = 1.0
     evader_radius: _Positive = 0.2
     motion: str = "area-speed-degree"
     motion_speed: _Positive | None = None
-    method: str = "exact"
+    method: str = DEFAULT_METHOD
     cells: str | None = None
     clearance: _Positive | None = None
     time_limit: _Positive = 1800.0
@@ -90,15 +103,24 @@ class Scenario(BaseModel):
             return (value,)
         return tuple(value) if isinstance(value, list) else value
 
-    @field_validator("range", mode="before")
+    @field_validator("range", "fov_degrees", "detection", "speed", mode="before")
     @classmethod
-    def _unlimited(cls, value: object) -> object:
-        return math.inf if value is None else value
+    def _for_all_or_each(cls, value: object, info: Any) -> object:
+        if isinstance(value, list | tuple):
+            return tuple(cls._for_all_or_each(one, info) for one in value)
+        return math.inf if value is None and info.field_name == "range" else value
 
-    @field_validator("capture", "evader", "motion")
+    @field_validator("capture", "belief_capture", "evader", "motion", "checkpoints", "communication")
     @classmethod
     def _known(cls, value: str, info: Any) -> str:
-        known: dict[str, Iterable[str]] = {"capture": CAPTURE_RULES, "evader": EVADERS, "motion": MOTIONS}
+        known: dict[str, Iterable[str]] = {
+            "capture": CAPTURE_RULES,
+            "belief_capture": BELIEVED_CAPTURES,
+            "evader": EVADERS,
+            "motion": MOTIONS,
+            "checkpoints": CHECKPOINTS,
+            "communication": LINKS,
+        }
         valid = tuple(known[info.field_name])
         if value not in valid:
             raise ValueError(f"is not {value!r}: {nearest(value, valid)}")
@@ -112,8 +134,22 @@ class Scenario(BaseModel):
             start=self.start,
             speed=self.speed,
             radius=self.radius,
-            sensor=Sensor(self.range, math.radians(self.fov_degrees), self.detection),
+            sensor=self._sensors(),
+            communication=Communication(self.communication, self.communication_range or math.inf),
+            checkpoints=self.checkpoints,
+            believes=self.belief_capture,
         )
+
+    def _sensors(self) -> Sensor | tuple[Sensor, ...]:
+        kinds = (self.range, self.fov_degrees, self.detection)
+        for name, values in zip(("range", "fov_degrees", "detection"), kinds, strict=True):
+            if isinstance(values, tuple) and len(values) != self.pursuers:
+                raise ScenarioError(
+                    f"{name} has {len(values)} values for {self.pursuers} pursuers: give one, or one each."
+                )
+        each = [values if isinstance(values, tuple) else (values,) * self.pursuers for values in kinds]
+        sensors = tuple(Sensor(reach, math.radians(field), share) for reach, field, share in zip(*each, strict=True))
+        return sensors if any(isinstance(values, tuple) for values in kinds) else sensors[0]
 
     def method_of_planning(self) -> Planner:
         """Make the planner, with its parameters."""
@@ -129,6 +165,7 @@ class Scenario(BaseModel):
             start=self.evader_start,
             speed=self.evader_speed,
             radius=self.evader_radius,
+            count=self.evaders,
         )
 
     def belief_motion(self) -> MotionModel:
@@ -152,7 +189,6 @@ class Scenario(BaseModel):
     def as_dict(self) -> dict[str, Any]:
         """Return what a scenario file would hold: plain values, a planner's defaults told, no keys that mean "none"."""
         told = self.model_dump(mode="python") | _planner_keys(self.method_of_planning())
-        told["start"] = list(self.start)
         return _told(told)
 
     def as_toml(self) -> str:
@@ -207,7 +243,7 @@ def _load(path: Path) -> dict[str, Any]:
 
 
 def _sentence(exc: ValidationError, path: Path | None, flags: dict[str, Any]) -> str:
-    error = exc.errors()[0]
+    error = max(exc.errors(), key=lambda one: isinstance(one["input"], int | float))  # the value, not its whole list
     key = str(error["loc"][0])
     where = f"--{key.replace('_', '-')}" if key in flags or path is None else f"{path}: {key}"
     if error["type"] == "value_error":
@@ -238,12 +274,17 @@ def describe(
         "pursuers": team.pursuers,
         "start": list(team.start),
         **_planner_keys(team.planner),
+        "checkpoints": team.checkpoints,
+        "communication": team.communication.links,
+        "communication_range": team.communication.range,
         "capture": capture,
-        "range": team.sensor.range,
-        "fov_degrees": math.degrees(team.sensor.field_of_view),
-        "detection": team.sensor.detection,
-        "speed": team.speed,
+        "belief_capture": team.believes,
+        "range": _each([sensor.range for sensor in team.sensors]),
+        "fov_degrees": _each([math.degrees(sensor.field_of_view) for sensor in team.sensors]),
+        "detection": _each([sensor.detection for sensor in team.sensors]),
+        "speed": _each(team.speeds),
         "radius": team.radius,
+        "evaders": evader.count,
         "evader": kinds.get(type(evader.model), type(evader.model).__name__),
         "evader_start": evader.start,
         "evader_speed": evader.speed,
@@ -267,5 +308,11 @@ def _planner_keys(planner: Planner) -> dict[str, Any]:
     return {"planner": names.get(type(planner), type(planner).__name__), **own, "options": told}
 
 
+def _each(values: Sequence[float]) -> float | list[float]:
+    """Return one value if it is the same for all robots, else all."""
+    return values[0] if len(set(values)) == 1 else list(values)
+
+
 def _told(keys: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in keys.items() if value not in (None, math.inf, [], {})}
+    plain = {key: list(value) if isinstance(value, tuple) else value for key, value in keys.items()}
+    return {key: value for key, value in plain.items() if value not in (None, math.inf, [], {})}

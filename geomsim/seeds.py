@@ -31,6 +31,10 @@ class Streams:
         """Where it goes."""
         return self._stream(1)
 
+    def moving_of(self, evader: int) -> np.random.Generator:
+        """Where one of several evaders goes, counted from 0; of the first one as where there are no others."""
+        return self._stream(1, evader) if evader else self.moving
+
     @property
     def deciding(self) -> np.random.Generator:
         """The planner's."""
@@ -41,8 +45,8 @@ class Streams:
         """How long robots look at the evader before they notice it."""
         return self._stream(3)
 
-    def _stream(self, number: int) -> np.random.Generator:
-        return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(number,)))
+    def _stream(self, *number: int) -> np.random.Generator:
+        return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=number))
 
 
 def trial_seeds(seed: int, trials: int) -> list[int]:

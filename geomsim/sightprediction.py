@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from discretize import CellMap
-from geomsim.pursuit import Timing, believed_capture
+from geomsim.pursuit import Timing
 from geomsim.seeds import Streams, trial_seeds
 from geomsim.team import Team
 from geomsim.teamwork import Teamwork
@@ -90,8 +90,8 @@ class _Run:
         chance = Streams(seed).deciding
         fresh, clocked = chance.bit_generator.state, _Clocked(team.planner)
         timed = replace(team, planner=clocked)
-        work = Teamwork(cells, timed, starts, motion, believed_capture(team, timing), timing.belief_step, [chance])
-        looker = watch.lookout([team.sensor] * team.pursuers, watch.first_belief(starts))
+        work = Teamwork(cells, timed, starts, motion, timing.belief_step, [chance])
+        looker = watch.lookout(team.sensors, watch.first_belief(starts))
         curve: list[float] = []
         for k in range(timing.steps):
             work.step(k * timing.physics_step, timing.physics_step)

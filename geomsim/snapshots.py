@@ -153,17 +153,9 @@ def _draw_sheet(
         told = f"t = {time:.1f} s"
         by = episode.outcome.pursuer
         if moment.captured and by is not None:
-            figures.spotting(part, moment.pursuers[by], moment.evader)
+            figures.spotting(part, moment.pursuers[by], moment.evaders[episode.outcome.evader])
             told += f" · captured by P{by + 1}"
-        figures.bodies(
-            part,
-            moment.pursuers,
-            moment.headings,
-            moment.evader,
-            captured=moment.captured,
-            prefix="P",
-            last=-1 if by is None else by,
-        )
+        figures.bodies(part, moment, prefix="P", last=-1 if by is None else by)
         at = (left + panel.left + panel.width / 2, top + panel.bottom + panel.top + 4 * unit)
         sheet.text(told, at, 13 * unit, colours.text, "centre")
 

@@ -1,4 +1,4 @@
-"""Who takes part in a pursuit: the team of pursuers and the evader."""
+"""Who takes part in a pursuit: the team of pursuers and the evaders."""
 
 from __future__ import annotations
 
@@ -8,17 +8,23 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from discretize import CellMap
+from geomsim.communication import Communication
 from geomsim.evaders import CentroidBoundary, EvaderModel
 from geomsim.sensing import Sensor
-from maps import GeomsimError
-from planners import Decoupled, Planner
+from maps import GeomsimError, nearest
+from planners import CHECKPOINTS, Decoupled, Planner
 
-__all__ = ["Evader", "Team", "place_evader", "place_team"]
+__all__ = ["BELIEVED_CAPTURES", "Evader", "Team", "place_evader", "place_team"]
+
+BELIEVED_CAPTURES = {
+    "cell": "a pursuer catches whoever is in its own cell (the paper's assumption)",
+    "sight": "a pursuer catches whoever it sees, within its range and field of view",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Team:
-    """A team of like pursuers.
+    """A team of pursuers.
 
     Attributes
     ----------
@@ -30,51 +36,92 @@ class Team:
         Numbers of the cells in which they start, from 1; one number is for all of them, none leaves the choice to the
         plan (its own start cells, taken in turn; without any, all start in the cell of lowest number in the largest
         connected part).
-    speed : float
-        Metres a second.
+    speed : float or tuple of float
+        Of all of them, or of each; metres a second.
     radius : float
         Of a body, metres.
-    sensor : Sensor
-        What each of them sees.
+    sensor : Sensor or tuple of Sensor
+        What all of them see, or each of them.
+    communication : Communication
+        Whether one planner plans for all, or each for itself, and who hears whom.
+    checkpoints : {"centroids", "boundaries"}
+        Where they decide anew: at the centroids of cells, or also where they pass from cell to cell.
+    believes : {"cell", "sight"}
+        What they count on to catch, see ``BELIEVED_CAPTURES``.
+
+    Raises
+    ------
+    GeomsimError
+        If a value is impossible, or there are several speeds or sensors, but not one for each.
     """
 
     pursuers: int = 2
     planner: Planner = field(default_factory=Decoupled)
     start: tuple[int, ...] = ()
-    speed: float = 1.0
+    speed: float | tuple[float, ...] = 1.0
     radius: float = 0.2
-    sensor: Sensor = field(default_factory=Sensor)
+    sensor: Sensor | tuple[Sensor, ...] = field(default_factory=Sensor)
+    communication: Communication = field(default_factory=Communication)
+    checkpoints: str = "centroids"
+    believes: str = "cell"
 
     def __post_init__(self) -> None:
         if self.pursuers < 1:
             raise GeomsimError(f"A team needs at least one pursuer, but {self.pursuers} were asked for.")
-        _check_body("pursuer", self.speed, self.radius)
+        for what, given in (("speeds", self.speeds), ("sensors", self.sensors)):
+            if len(given) != self.pursuers:
+                raise GeomsimError(
+                    f"{len(given)} {what} are given for {self.pursuers} pursuers: give one, or one each."
+                )
+        for speed in self.speeds:
+            _check_body("pursuer", speed, self.radius)
+        for what, name, known in (
+            ("kind of checkpoints", self.checkpoints, CHECKPOINTS),
+            ("believed capture", self.believes, BELIEVED_CAPTURES),
+        ):
+            if name not in known:
+                raise GeomsimError(f"There is no {what} {name!r}; {nearest(name, known)}")
+
+    @property
+    def speeds(self) -> tuple[float, ...]:
+        """Speed of each pursuer, metres a second."""
+        return self.speed if isinstance(self.speed, tuple) else (self.speed,) * self.pursuers
+
+    @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """What each pursuer sees."""
+        return self.sensor if isinstance(self.sensor, tuple) else (self.sensor,) * self.pursuers
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evader:
-    """The one who is searched for.
+    """The one who is searched for, or several of a kind, who know nothing of each other.
 
     Attributes
     ----------
     model : EvaderModel
-        How it moves.
+        How each moves.
     start : int or None
-        Number of the cell in which it starts, from 1; None for a uniformly random one that the pursuers can reach and
-        in which none of them starts.
+        Number of the cell in which each starts, from 1; None for a uniformly random one that the pursuers can reach
+        and in which none of them starts.
     speed : float
         Metres a second.
     radius : float
-        Of its body, metres.
+        Of a body, metres.
+    count : int
+        How many there are.
     """
 
     model: EvaderModel = field(default_factory=CentroidBoundary)
     start: int | None = None
     speed: float = 1.0
     radius: float = 0.2
+    count: int = 1
 
     def __post_init__(self) -> None:
         _check_body("evader", self.speed, self.radius)
+        if self.count < 1:
+            raise GeomsimError(f"There must be at least one evader, but {self.count} were asked for.")
 
 
 def _check_body(who: str, speed: float, radius: float) -> None:

@@ -8,26 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from discretize import CellMap
+from geomsim.believing import believed_problem
+from geomsim.crew import Crew
 from geomsim.team import Team
 from geomsim.walking import Routes, Walkers
 from geomsim.world import World
 from maps import GeomsimError
-from planners import (
-    CaptureModel,
-    MotionModel,
-    Policy,
-    PursuerState,
-    SearchGraph,
-    SearchProblem,
-    SearchState,
-    advance,
-    uniform_belief,
-)
+from planners import CaptureModel, LineOfSight, MotionModel, PursuerState
+
+if TYPE_CHECKING:
+    from planners.motion import Sparse
 
 __all__ = ["Choice", "Teamwork"]
 
@@ -45,7 +41,7 @@ class Choice:
     pursuer : int
         Who, counted from 0.
     path : tuple of int
-        Cells to visit, counted from 0, the next one first.
+        Cells to visit, counted from 0, the next one first; of checkpoints only those that are cells.
     """
 
     time: float
@@ -65,19 +61,21 @@ class Teamwork:
         Who.
     starts : sequence of int
         The cell in which each pursuer starts, counted from 0.
-    motion, capture : MotionModel, CaptureModel
-        What the team believes.
+    motion : MotionModel
+        How the team believes the evader to move from cell to cell.
     belief_step : float
         Time between two calls of :meth:`learn`, seconds.
     deciding : sequence of Generator
         The planner's chance in each run.
+    evaders : int
+        How many are searched for.
 
     Attributes
     ----------
     headings : ndarray, shape (R, P)
         Directions of travel, radians, counterclockwise from the x axis; a robot that stands keeps its last one.
-    beliefs : ndarray, shape (R, N + 1)
-        What each run believes.
+    crews : list of Crew
+        What the robots of each run know.
     choices : list of Choice
         What has been decided so far.
     """
@@ -88,29 +86,37 @@ class Teamwork:
         team: Team,
         starts: Sequence[int],
         motion: MotionModel,
-        capture: CaptureModel,
         belief_step: float,
         deciding: Sequence[np.random.Generator],
+        evaders: int = 1,
     ) -> None:
-        self.team, self.routes = team, Routes(cells)
+        self.team = team
+        roads, self._problem = believed_problem(cells, team, motion, belief_step)
+        self.routes = Routes(roads)
         self.runs, self._shape = len(deciding), (len(deciding), team.pursuers)
         begin = [self.routes.stay(cell, 0.0) for cell in starts] * self.runs
         size = len(begin)
-        self._walkers = Walkers(np.full(size, team.speed), begin)
+        speeds = np.tile(team.speeds, self.runs)
+        self._walkers = Walkers(speeds, begin)
         self._world = World(
             cells.plan.walls, np.array([route.points[0] for route in begin]), np.full(size, team.radius)
         )
         self.headings = np.zeros(self._shape)
-        self._stay = team.speed * belief_step
-        self._graph, self._capture = SearchGraph.from_cells(cells), capture
-        self._transition = motion.matrix(self._graph, belief_step)
-        speeds = (team.speed,) * team.pursuers
-        problem = SearchProblem(self._graph, motion, capture, speeds, belief_step)
-        self._policies: list[Policy] = [team.planner.solve(problem, rng) for rng in deciding]
-        self._rows: dict[int, NDArray[np.float64]] = {}
-        belief = uniform_belief(self._graph, exclude=starts, component=int(self._graph.component[starts[0]]))
-        self.beliefs = np.tile(belief, (self.runs, 1))
-        self._plans: list[list[tuple[int, ...]]] = [[()] * team.pursuers for _ in deciding]
+        self._stays = speeds * belief_step
+        self._looks = _Looks(self._problem.captures, self.routes, speeds)
+        belief = self._problem.first_belief(starts, int(roads.graph.component[starts[0]]))
+        self.crews = [
+            Crew(
+                self._problem,
+                team.planner,
+                belief,
+                starts,
+                chance,
+                central=team.communication.central,
+                evaders=evaders,
+            )
+            for chance in deciding
+        ]
         self.choices: list[Choice] = []
 
     @property
@@ -128,6 +134,17 @@ class Teamwork:
         """Seconds for which each has been held up, shape (R, P)."""
         return self._walkers.idle.reshape(self._shape)
 
+    @property
+    def beliefs(self) -> NDArray[np.float64]:
+        """Probability of capture and of each cell, by all looks of each run, shape (R, N + 1)."""
+        return np.array([self._problem.states.gather(crew.belief) for crew in self.crews])
+
+    def own_beliefs(self, run: int) -> NDArray[np.float64]:
+        """Return the same by what each robot of a run knows, shape (P, N + 1); (0, N + 1) where one plans for all."""
+        states = self._problem.states
+        own = [states.gather(belief) for belief in self.crews[run].own_beliefs]
+        return np.array(own).reshape(len(own), states.cells + 1)
+
     def step(self, time: float, dt: float) -> None:
         """Go on from ``time`` by ``dt``, both in seconds; whoever comes to a checkpoint decides."""
         walkers, at, velocity = self._walkers, self._world.positions, self._world.velocities
@@ -136,32 +153,32 @@ class Teamwork:
             for run in np.flatnonzero(done.reshape(self._shape).any(axis=1)).tolist():
                 self._decide(run, time, done)
         self._world.step(walkers.wanted(dt), dt)
+        self._looks.lag = 2.0 * dt
         vx, vy = self._world.velocities.T
         course = np.where(np.hypot(vx, vy) > 1e-3, np.arctan2(vy, vx), self.headings.reshape(-1))
         self.headings = course.reshape(self._shape)
 
     def learn(self) -> None:
         """Take a belief step: dispersion, then capture where the pursuers are (Eq. 3)."""
-        rows = [[self._row(cell) for cell in run] for run in self.cells.tolist()]
-        self.beliefs = advance(self.beliefs, self._transition, np.array(rows))
+        for run, crew in enumerate(self.crews):
+            mine = range(run * self.team.pursuers, (run + 1) * self.team.pursuers)
+            rows = np.array([self._looks.row(i, k, self._walkers) for i, k in enumerate(mine)])
+            crew.learn(rows, self._contacts(run))
 
-    def _row(self, cell: int) -> NDArray[np.float64]:
-        if cell not in self._rows:
-            self._rows[cell] = self._capture.row(self._graph, cell)
-        return self._rows[cell]
+    def _contacts(self, run: int) -> NDArray[np.bool_]:
+        return self.team.communication.contacts(self._world, self.positions[run])
 
     def _decide(self, run: int, time: float, done: NDArray[np.bool_]) -> None:
         walkers, first = self._walkers, run * self.team.pursuers
         mine = range(first, first + self.team.pursuers)
-        aimed, left = walkers.aimed_cells, walkers.time_left
-        pursuers = tuple(
+        aimed, left = walkers.aimed_stops, walkers.time_left
+        pursuers = [
             PursuerState(int(walkers.ends[k]))
             if done[k]
             else PursuerState(int(aimed[k]), int(walkers.ends[k]), float(left[k]))
             for k in mine
-        )
-        plans = self._plans[run]
-        decisions = self._policies[run].decide(SearchState(time, self.beliefs[run], pursuers, tuple(plans)))
+        ]
+        decisions = self.crews[run].decide(time, pursuers, [bool(done[k]) for k in mine], self._contacts(run))
         for i, (k, decision) in enumerate(zip(mine, decisions, strict=True)):
             if not done[k]:
                 continue
@@ -171,7 +188,48 @@ class Teamwork:
                     f"The policy of {type(self.team.planner).__name__} sent pursuer {i + 1} from cell {here + 1} to "
                     "no neighbour of it; run planners.check_policy on it."
                 )
-            self.choices.append(Choice(time, run, i, tuple(decision.path)))
-            plans[i] = tuple(decision.path[1:])  # the first hop is under way
+            cells = self._problem.states.cells
+            self.choices.append(Choice(time, run, i, tuple(stop for stop in decision.path if stop < cells)))
             to = decision.path[0]
-            walkers.take(k, self.routes.stay(here, self._stay) if to == here else self.routes.between(here, to))
+            if to == here:
+                walkers.take(k, self.routes.stay(here, float(self._stays[k])))
+            else:
+                self._looks.arrival[k] = self.routes.roads.graph.edge(here, to)
+                walkers.take(k, self.routes.between(here, to))
+
+
+class _Looks:
+    """What robots see from where they are, as the belief counts it.
+
+    ``arrival[k]`` is the way on which walker ``k`` goes or by which it came, -1 before its first one; ``lag`` how many
+    seconds its body is behind its aim.
+    """
+
+    def __init__(self, captures: Sequence[CaptureModel], routes: Routes, speeds: NDArray[np.float64]) -> None:
+        self._captures, self._graph, self._speeds = captures, routes.roads.graph, speeds
+        self._rows: dict[tuple[int, int], NDArray[np.float64]] = {}
+        self._tables: dict[int, Sparse] = {}
+        self.arrival = np.full(len(speeds), -1)
+        self.lag = 0.0
+
+    def row(self, pursuer: int, k: int, walkers: Walkers) -> NDArray[np.float64]:
+        """Return the detection probability of each state, shape (S,), for walker ``k``, a pursuer of its team."""
+        capture = self._captures[pursuer]
+        if not isinstance(capture, LineOfSight):
+            key = (pursuer, int(walkers.cells[k]))
+            if key not in self._rows:
+                self._rows[key] = capture.row(self._graph, key[1])
+            return self._rows[key]
+        view = int(walkers.ends[k])
+        if self.arrival[k] >= 0:
+            edge = int(self.arrival[k])
+            standing = walkers.begins[k] == walkers.ends[k]
+            gone = np.inf if standing else max(0.0, walkers.aim[k] - self.lag * self._speeds[k])
+            way = min(gone, float(self._graph.length[edge]))
+            view = int(capture.viewpoints(self._graph, edge, np.array([way]))[0])
+        key = (pursuer, view)
+        if key not in self._rows:
+            if pursuer not in self._tables:
+                self._tables[pursuer] = capture.table(self._graph)
+            self._rows[key] = self._tables[pursuer][[view]].toarray()[0]
+        return self._rows[key]

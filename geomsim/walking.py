@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from discretize import CellMap
+from planners import Roads
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -20,22 +21,25 @@ __all__ = ["Route", "Routes", "Walkers"]
 
 @dataclass(frozen=True)
 class Route:
-    """The way from the checkpoint of one cell to that of a neighbour, or a stay.
+    """The way from a checkpoint to a neighbouring one, or a stay.
 
     Attributes
     ----------
+    stops : tuple of int
+        Checkpoints at which it begins and ends, counted from 0; twice the same one for a stay.
     cells : tuple of int
-        Where it begins and ends, counted from 0; twice the same cell for a stay.
+        Cells in which these count, see :class:`planners.Roads`.
     points : ndarray, shape (k, 2)
         A polyline, metres.
     marks : ndarray, shape (k,)
         Way from the beginning to each point, metres.
     crossing : float
-        Way from the beginning to the portal, metres; infinite for a stay.
+        Way from the beginning to where the second cell begins, metres; infinite for a stay.
     length : float
         Metres; for a stay the way that a body would have gone meanwhile.
     """
 
+    stops: tuple[int, int]
     cells: tuple[int, int]
     points: NDArray[np.float64]
     marks: NDArray[np.float64]
@@ -59,49 +63,54 @@ class Route:
 
 
 class Routes:
-    """All routes of a cell map, made when first asked for."""
+    """All routes of a cell map, made when first asked for.
 
-    def __init__(self, cells: CellMap) -> None:
-        self._cells = cells
-        self._portals = {portal.cells: portal for portal in cells.portals}
+    Parameters
+    ----------
+    place : CellMap or Roads
+        The map, for ways from centroid to centroid, or its roads.
+    """
+
+    def __init__(self, place: CellMap | Roads) -> None:
+        self.roads = place if isinstance(place, Roads) else Roads.of(place)
+        graph = self.roads.graph
         self._made: dict[tuple[int, int], Route] = {}
         self._stays: dict[tuple[int, float], Route] = {}
         self._trees: dict[int, tuple[NDArray[np.float64], NDArray[np.int32]]] = {}
-        joined: list[list[int]] = [[] for _ in cells.cells]
-        for i, j in cells.edges:
-            joined[i].append(j)
-            joined[j].append(i)
-        self.neighbours: tuple[tuple[int, ...], ...] = tuple(tuple(sorted(row)) for row in joined)
+        self.neighbours: tuple[tuple[int, ...], ...] = tuple(
+            tuple(graph.neighbours(stop).tolist()) for stop in range(len(graph))
+        )
 
-    def checkpoint(self, cell: int) -> NDArray[np.float64]:
-        """Return the checkpoint of a cell, shape (2,), metres."""
-        return np.asarray(self._cells.checkpoints[cell], dtype=np.float64)
+    def checkpoint(self, stop: int) -> NDArray[np.float64]:
+        """Return where a checkpoint is, shape (2,), metres."""
+        return np.asarray(self.roads.points[stop], dtype=np.float64)
 
     def between(self, start: int, end: int) -> Route:
-        """Return the route from the checkpoint of a cell to that of a neighbour."""
+        """Return the route from a checkpoint to a neighbouring one."""
         key = (start, end)
         if key not in self._made:
-            portal = self._portals[(min(key), max(key))]
-            near, far = portal.legs if start < end else portal.legs[::-1]
-            points = np.concatenate([near, far[-2::-1]])
+            edge = self.roads.graph.edge(start, end)
+            points, cells = self.roads.lines[edge], (int(self.roads.cell[start]), int(self.roads.cell[end]))
             marks = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-            self._made[key] = Route(key, points, marks, float(marks[len(near) - 1]), float(marks[-1]))
+            crossing = float(self.roads.graph.leave[edge])
+            self._made[key] = Route(key, cells, points, marks, crossing, float(marks[-1]))
         return self._made[key]
 
-    def stay(self, cell: int, length: float) -> Route:
+    def stay(self, stop: int, length: float) -> Route:
         """Return a stay at a checkpoint for as long as going ``length`` metres would take."""
-        key = (cell, length)
+        key = (stop, length)
         if key not in self._stays:
-            here = self.checkpoint(cell)
-            self._stays[key] = Route((cell, cell), np.stack([here, here]), np.array([0.0, length]), np.inf, length)
+            here, cell = self.checkpoint(stop), int(self.roads.cell[stop])
+            points, marks = np.stack([here, here]), np.array([0.0, length])
+            self._stays[key] = Route((stop, stop), (cell, cell), points, marks, np.inf, length)
         return self._stays[key]
 
     def distances(self, start: int) -> NDArray[np.float64]:
-        """Return the way from the checkpoint of a cell to every other, shape (N,), metres; infinite where none is."""
+        """Return the way from a checkpoint to every other, shape (V,), metres; infinite where none is."""
         return self._tree(start)[0]
 
     def path(self, start: int, end: int) -> tuple[int, ...]:
-        """Return the cells on the shortest way from one cell to another, without the first; none if there is none."""
+        """Return the checkpoints on the shortest way from one to another, without the first; none if there is none."""
         before = self._tree(start)[1]
         path: list[int] = []
         while end != start and end >= 0:
@@ -113,7 +122,7 @@ class Routes:
         if start not in self._trees:
             from scipy.sparse.csgraph import dijkstra
 
-            way, before = dijkstra(self._ways, directed=False, indices=[start], return_predecessors=True)
+            way, before = dijkstra(self._ways, directed=True, indices=[start], return_predecessors=True)
             self._trees[start] = way[0], before[0]
         return self._trees[start]
 
@@ -121,9 +130,8 @@ class Routes:
     def _ways(self) -> csr_array[Any, tuple[int, int]]:
         from scipy.sparse import csr_array
 
-        n, edges = len(self.neighbours), self._cells.edges
-        i, j = np.array(edges, dtype=np.intp).reshape(-1, 2).T
-        return csr_array(([self.between(a, b).length for a, b in edges], (i, j)), shape=(n, n))
+        graph = self.roads.graph
+        return csr_array((graph.length, (self.roads.tails, graph.indices)), shape=(len(graph), len(graph)))
 
 
 class Walkers:
@@ -145,10 +153,12 @@ class Walkers:
     ----------
     aim : ndarray, shape (K,)
         Way of the aim along the route, metres.
+    begins : ndarray of int32, shape (K,)
+        The checkpoint at which the route begins.
     cells : ndarray of int32, shape (K,)
         The cell in which each body is, counted from 0.
     ends : ndarray of int32, shape (K,)
-        The cell at whose checkpoint the route ends.
+        The checkpoint at which the route ends.
     idle : ndarray, shape (K,)
         Seconds since the aim last moved; it waits while a body is held up.
     """
@@ -161,7 +171,8 @@ class Walkers:
         self.speeds = np.array(speeds, dtype=np.float64)
         self._squares = self.speeds**2
         self.aim, self.idle, self._length, self._crossing = np.zeros(k), np.zeros(k), np.zeros(k), np.zeros(k)
-        self._begins, self.ends = np.zeros(k, dtype=np.int32), np.zeros(k, dtype=np.int32)
+        self._leaves, self._enters = np.zeros(k, dtype=np.int32), np.zeros(k, dtype=np.int32)
+        self.begins, self.ends = np.zeros(k, dtype=np.int32), np.zeros(k, dtype=np.int32)
         # polylines, padded to the longest one met so far: points, ways to them, metres of x and y a metre of way
         self._points, self._slopes = np.zeros((k, 2, 2)), np.zeros((k, 2, 2))
         self._marks = np.full((k, 3), np.inf)
@@ -175,7 +186,7 @@ class Walkers:
         # where the bodies should be now and one step from now
         self._now = self._next = self._corner.copy()
         self._coasting = self._now
-        self.cells = self._next_cells = self._begins.copy()
+        self.cells = self._next_cells = self._leaves.copy()
 
     @property
     def done(self) -> NDArray[np.bool_]:
@@ -190,7 +201,12 @@ class Walkers:
     @property
     def aimed_cells(self) -> NDArray[np.int32]:
         """The cell in which each aim is, counted from 0, shape (K,)."""
-        return np.where(self.aim < self._crossing, self._begins, self.ends)
+        return np.where(self.aim < self._crossing, self._leaves, self._enters)
+
+    @property
+    def aimed_stops(self) -> NDArray[np.int32]:
+        """The checkpoint, of the two of its route, in whose cell each aim is; shape (K,)."""
+        return np.where(self.aim < self._crossing, self.begins, self.ends)
 
     def take(self, k: int, route: Route) -> None:
         """Let walker ``k`` go on along another route; what its aim had left over of the step is gone along it."""
@@ -235,7 +251,9 @@ class Walkers:
             "idle",
             "_length",
             "_crossing",
-            "_begins",
+            "_leaves",
+            "_enters",
+            "begins",
             "ends",
             "cells",
             "_next_cells",
@@ -255,7 +273,8 @@ class Walkers:
         self._points[k, :n], self._slopes[k, :n] = route.points, route.slopes
         self._marks[k, :n], self._marks[k, n:] = route.marks, np.inf
         self._length[k], self._crossing[k] = route.length, route.crossing
-        self._begins[k], self.ends[k] = route.cells
+        self._leaves[k], self._enters[k] = route.cells
+        self.begins[k], self.ends[k] = route.stops
         self._piece[k], self._until[k] = -1, -np.inf
 
     def _turn(self, which: NDArray[np.intp]) -> None:

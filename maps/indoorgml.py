@@ -11,11 +11,11 @@ import shapely
 from numpy.typing import NDArray
 
 from maps.errors import PlanError
-from maps.extras import need
 from maps.floorplan import FloorPlan, Label, Repair
 from maps.levels import choose_level
 from maps.making import make_plan
 from maps.openings import DOOR, Opening, open_door, thick_walls, wall_at
+from maps.xmlfiles import kind_of, read_xml
 
 __all__ = ["read_indoorgml"]
 
@@ -41,7 +41,7 @@ def read_indoorgml(path: Path, *, level: str | int | None = None) -> FloorPlan:
         If the file is not IndoorGML, has no cell with a floor, or no such storey.
     """
     where = str(path)
-    root = _root(path, where)
+    root = read_xml(path, "IndoorFeatures", "IndoorGML")
     floors = [floor for cell in _all(root, "CellSpace") for floor in _floors(cell, where)]
     storeys = _storeys(floors)
     areas = {name: sum(room.area for _, _, room in found) for name, found in storeys.items()}
@@ -75,31 +75,13 @@ def read_indoorgml(path: Path, *, level: str | int | None = None) -> FloorPlan:
     )
 
 
-def _root(path: Path, where: str) -> Any:
-    tree = need("defusedxml.ElementTree", where)
-    common = need("defusedxml.common", where)
-    try:
-        root = tree.parse(path).getroot()
-    except OSError as exc:
-        raise PlanError(f"{where}: the file cannot be read ({exc.strerror}).") from exc
-    except (tree.ParseError, common.DefusedXmlException, ValueError) as exc:
-        raise PlanError(f"{where}: the file is not valid XML ({exc}).") from exc
-    if _kind(root) != "IndoorFeatures":
-        raise PlanError(f"{where}: this is not IndoorGML; its root is {_kind(root)!r}, not 'IndoorFeatures'.")
-    return root
-
-
-def _kind(element: Any) -> str:
-    return str(element.tag).rpartition("}")[2]
-
-
 def _all(element: Any, kind: str) -> Iterator[Any]:
-    return (child for child in element.iter() if _kind(child) == kind)
+    return (child for child in element.iter() if kind_of(child) == kind)
 
 
 def _positions(element: Any, where: str) -> NDArray[np.float64]:
     """Positions below an element, shape (n, 3)."""
-    text = " ".join(child.text or "" for child in element.iter() if _kind(child) in ("pos", "posList"))
+    text = " ".join(child.text or "" for child in element.iter() if kind_of(child) in ("pos", "posList"))
     try:
         return np.array([float(value) for value in text.split()]).reshape(-1, 3)
     except ValueError as exc:
@@ -115,7 +97,7 @@ def _floors(cell: Any, where: str) -> list[Floor]:
     low = min(float(ring[:, 2].min()) for ring in flat)
     outlines = [shapely.Polygon(ring[:, :2]) for ring in flat if ring[:, 2].min() < low + STOREY / 4]
     shadow = shapely.union_all(shapely.make_valid(outlines, method="structure", keep_collapsed=False), grid_size=1e-3)
-    name = next((child.text or "" for child in cell if _kind(child) == "name"), "")
+    name = next((child.text or "" for child in cell if kind_of(child) == "name"), "")
     return [(name, low, part) for part in shapely.get_parts(shadow) if isinstance(part, shapely.Polygon)]
 
 

@@ -20,6 +20,7 @@ from maps.floorplan import FloorPlan
 from maps.making import make_plan
 from maps.named import space_of
 from maps.units import check_resolution, metres_per
+from maps.xmlfiles import kind_of, read_xml
 
 __all__ = ["read_svg"]
 
@@ -50,7 +51,7 @@ def read_svg(path: Path, *, resolution: float | None = None, units: str | None =
     if resolution is None and units is None:
         raise PlanError(f"{where}: a drawing does not say its scale; give the resolution, metres for a unit of it.")
     metres = metres_per(units, where) if resolution is None else check_resolution(resolution, where)
-    root = _root(path, where)
+    root = read_xml(path, "svg", "SVG")
     lines = [(name, xy) for name, xy in _lines(root, np.eye(3), "", where) if len(xy) > 1 and np.ptp(xy, axis=0).any()]
     if not lines:
         raise PlanError(f"{where}: there is no free space in it; nothing is drawn in it.")
@@ -61,30 +62,12 @@ def read_svg(path: Path, *, resolution: float | None = None, units: str | None =
     return make_plan(free, name=path.stem, solid=solid, source=where, repairs=repairs)
 
 
-def _root(path: Path, where: str) -> Any:
-    tree = need("defusedxml.ElementTree", where)
-    common = need("defusedxml.common", where)
-    try:
-        root = tree.parse(path).getroot()
-    except OSError as exc:
-        raise PlanError(f"{where}: the file cannot be read ({exc.strerror}).") from exc
-    except (tree.ParseError, common.DefusedXmlException, ValueError) as exc:
-        raise PlanError(f"{where}: the file is not valid XML ({exc}).") from exc
-    if _kind(root) != "svg":
-        raise PlanError(f"{where}: this is not SVG; its root is {_kind(root)!r}, not 'svg'.")
-    return root
-
-
-def _kind(element: Any) -> str:
-    return str(element.tag).rpartition("}")[2]
-
-
 def _lines(
     element: Any, outer: NDArray[np.float64], names: str, where: str
 ) -> Iterator[tuple[str, NDArray[np.float64]]]:
     """Yield the name and the vertices, shape (n, 2), of every line below an element, in the units of the drawing."""
     tools = need("svgpathtools", where)
-    if _kind(element) in HIDDEN or "display:none" in element.get("style", "").replace(" ", ""):
+    if kind_of(element) in HIDDEN or "display:none" in element.get("style", "").replace(" ", ""):
         return
     own = [value for key, value in element.attrib.items() if key.rpartition("}")[2] in ("id", "class", "label")]
     name = " ".join([names, *own])
@@ -93,7 +76,7 @@ def _lines(
         for xy in _vertices(element, tools):
             yield name, (np.column_stack([xy, np.ones(len(xy))]) @ matrix.T)[:, :2]
     except (ValueError, IndexError, KeyError, TypeError, AssertionError) as exc:
-        what = f"{_kind(element)} {element.get('id', '')}".strip()
+        what = f"{kind_of(element)} {element.get('id', '')}".strip()
         raise PlanError(f"{where}: the shape {what!r} has coordinates that are missing or wrong.") from exc
     for child in element:
         if isinstance(child.tag, str):
@@ -101,7 +84,7 @@ def _lines(
 
 
 def _vertices(element: Any, tools: Any) -> Iterator[NDArray[np.float64]]:
-    kind = _kind(element)
+    kind = kind_of(element)
     if kind == "rect":
         x, y, w, h = (float(element.get(key, 0)) for key in ("x", "y", "width", "height"))
         yield np.array([[x, y], [x + w, y], [x + w, y + h], [x, y + h], [x, y]])

@@ -32,10 +32,12 @@ from planners.motion import (
     check_transition,
     fit_motion,
 )
+from planners.parts import MotionInParts, cut_cells
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
 from planners.registry import PLANNERS, PlannerEntry, make_planner, parse_method
 from planners.roads import CHECKPOINTS, Roads
 from planners.rollout import Rollout
+from planners.sight import LineOfSight, OwnCell, SightMap
 from planners.space import StateSpace
 from planners.team import PlannerError
 from planners.walks import TooLargeError
@@ -61,8 +63,11 @@ __all__ = [
     "GivenMotion",
     "GraphError",
     "Hops",
+    "LineOfSight",
     "MotionError",
+    "MotionInParts",
     "MotionModel",
+    "OwnCell",
     "Planner",
     "PlannerEntry",
     "PlannerError",
@@ -77,6 +82,7 @@ __all__ = [
     "SearchProblem",
     "SearchState",
     "Sequential",
+    "SightMap",
     "StateSpace",
     "Stationary",
     "StationaryMotion",
@@ -85,6 +91,7 @@ __all__ = [
     "advance",
     "check_policy",
     "check_transition",
+    "cut_cells",
     "elsewhere",
     "find_cost",
     "fit_motion",

@@ -59,6 +59,7 @@ def predict(
     rng: np.random.Generator,
     *,
     belief: NDArray[np.float64] | None = None,
+    reachable: bool = False,
     residue: float = 1e-7,
     longest: int = 100_000,
 ) -> tuple[Prediction, ...]:
@@ -80,6 +81,8 @@ def predict(
         Given to the planner; the same for each start, so that one start's result does not depend on the others.
     belief : ndarray, shape (N + 1,), optional
         Where the evader is at first; without it uniform over all cells but those of the pursuers.
+    reachable : bool
+        Whether it is then taken to be in the connected part of the first pursuer.
     residue : float
         A pursuit is followed until the probability of no capture is below this; what is left is taken to go on at
         the rate of the last half.
@@ -97,7 +100,7 @@ def predict(
     beliefs = []
     for start in starts:
         _check_start(problem, start)
-        beliefs.append(problem.first_belief(start) if belief is None else belief)
+        beliefs.append(_first_belief(problem, start, reachable=reachable) if belief is None else belief)
         _check_reach(problem, start, beliefs[-1])
     seed = int(rng.integers(2**63))
     teams = [tuple(int(cell) for cell in start) for start in starts]
@@ -113,9 +116,13 @@ def predict(
 
 
 def lower_bounds(
-    problem: SearchProblem, starts: Sequence[Sequence[int]], belief: NDArray[np.float64] | None = None
+    problem: SearchProblem,
+    starts: Sequence[Sequence[int]],
+    belief: NDArray[np.float64] | None = None,
+    *,
+    reachable: bool = False,
 ) -> tuple[float, ...]:
-    """Return for each start an expected time that no planner can beat, seconds.
+    """Return for each start an expected time that no planner can beat, seconds; arguments as for :func:`predict`.
 
     It is what a team would need that always knew the evader's state; see :meth:`JointChain.informed_times`.
 
@@ -126,7 +133,7 @@ def lower_bounds(
     """
     chain = JointChain(problem, wait=True)
     times = chain.informed_times()
-    first = [problem.first_belief(start) if belief is None else belief for start in starts]
+    first = [_first_belief(problem, start, reachable=reachable) if belief is None else belief for start in starts]
     return tuple(float(b[1:] @ times[tuple(start)]) for start, b in zip(starts, first, strict=True))
 
 
@@ -176,6 +183,10 @@ def _follow(
     )
     mean = float(np.mean(run.seconds)) if run.seconds else float("nan")
     return Prediction(team, run.expected_steps() * model.step, run.survival, paths, mean)
+
+
+def _first_belief(problem: SearchProblem, start: Sequence[int], *, reachable: bool) -> NDArray[np.float64]:
+    return problem.first_belief(start, int(problem.graph.component[start[0]]) if reachable else None)
 
 
 def _check_start(problem: SearchProblem, start: Sequence[int]) -> None:

@@ -67,7 +67,9 @@ class SearchProblem:
         return StateSpace.of_cells(len(self.graph)) if self.space is None else self.space
 
     def first_belief(self, start: Sequence[int], component: int | None = None) -> NDArray[np.float64]:
-        """Return where the evader is at first: in any cell alike but those in which pursuers start; shape (S + 1,).
+        """Return where the evader is at first: in any cell alike but those of the pursuers; shape (S + 1,).
+
+        The pursuers have looked once from where they start.
 
         Parameters
         ----------
@@ -78,7 +80,12 @@ class SearchProblem:
         """
         beyond = range(self.states.cells, len(self.graph))  # checkpoints that are no cells
         cells = uniform_belief(self.graph, exclude=[*start, *beyond], component=component)
-        return self.states.spread(cells[: self.states.cells + 1])
+        belief = self.states.spread(cells[: self.states.cells + 1])
+        for capture, cell in zip(self.captures, start, strict=False):
+            seen = belief[1:] * capture.row(self.graph, cell)
+            belief[0] += seen.sum()
+            belief[1:] -= seen
+        return belief
 
 
 @dataclass(frozen=True, slots=True)

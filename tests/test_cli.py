@@ -438,8 +438,14 @@ def test_help_tells_defaults(key: str) -> None:
     doc = " ".join(docs.split(f"\n{key}\n", 1)[1].split())
     default = Scenario.model_fields[key].default
     words = {"start": "the plan's own", "range": "without limit", "evader_start": "a random one"}
+    words |= {"communication_range": "without limit"}
     words |= {"level": "the largest", "structure": "if it is plainly a scan"}
     words |= {"motion_speed": "as fast as it is", "clearance": "the largest radius"}
     words |= {"cost": Decoupled().cost, "depth": str(Decoupled().depth)}
     told = words.get(key, f"{default:g}" if isinstance(default, float) else str(default))
     assert doc[: doc.index("]") + 1].endswith(f" [default: {told}]"), doc
+
+
+def test_the_package_runs_as_a_module() -> None:
+    done = subprocess.run([sys.executable, "-m", "geomsim", "maps"], capture_output=True, text=True, check=True)
+    assert "office" in done.stdout

@@ -71,7 +71,7 @@ def test_a_missing_part_is_refused(arrays: dict[str, np.ndarray], tmp_path: Path
         Episode.load(bad)
 
 
-@pytest.mark.parametrize("name", ["pursuers", "headings", "evader", "beliefs", "evader_cells", "decision_pursuers"])
+@pytest.mark.parametrize("name", ["pursuers", "headings", "evaders", "beliefs", "evaders_cells", "decision_pursuers"])
 def test_a_part_of_another_length_is_refused(arrays: dict[str, np.ndarray], tmp_path: Path, name: str) -> None:
     bad = tmp_path / "bad.npz"
     np.savez(bad, **(arrays | {name: arrays[name][:-1]}))
@@ -93,9 +93,9 @@ def _outcome(arrays: dict[str, np.ndarray], **changed: object) -> np.ndarray:
         ("times", lambda a: a["times"][0]),
         ("times", lambda a: a["times"].astype(complex)),
         ("pursuers", lambda a: a["pursuers"] + 1e300),
-        ("evader", lambda a: a["evader"] - 1e4),
+        ("evaders", lambda a: a["evaders"] - 1e4),
         ("pursuers", lambda a: a["pursuers"].astype(str)),
-        ("evader_cells", lambda a: a["evader_cells"] + 99),
+        ("evaders_cells", lambda a: a["evaders_cells"] + 99),
         ("pursuer_cells", lambda a: a["pursuer_cells"] - 99),
         ("decision_pursuers", lambda a: a["decision_pursuers"] + 99),
         ("decision_paths", lambda a: a["decision_paths"] - 99),

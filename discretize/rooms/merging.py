@@ -195,8 +195,8 @@ class Regions:
         if todo:
             points = [corner for a, b, _ in todo for corner in (a.hull, b.hull)]
             which = np.repeat(np.arange(len(todo)), [len(a.hull) + len(b.hull) for a, b, _ in todo])
-            multipoints = shapely.multipoints(np.concatenate(points), indices=which)
-            hulls = np.asarray(shapely.convex_hull(multipoints), dtype=object)
+            lines = shapely.linestrings(np.concatenate(points), indices=which)
+            hulls = np.asarray(shapely.convex_hull(lines), dtype=object)
             areas = np.asarray(shapely.area(hulls))
             for (a, b, border), hull, hull_area in zip(todo, hulls, areas.tolist(), strict=True):
                 self._tried[_key(a, b)] = self._union(a, b, border, hull, hull_area)
@@ -246,12 +246,12 @@ def spread(polygon: BaseGeometry, n: int = 8) -> Array:
 
 def crossing(p: Array, q: Array, pieces: Array) -> float:
     """Return the share of pairs of points, one of ``p`` and one of ``q``, whose segment crosses one of ``pieces``."""
-    d = q[None] - p[:, None]
-    a, b = pieces[:, 0], pieces[:, 1]
-    to_a, to_b = a[None] - p[:, None], b[None] - p[:, None]
-    left = d[:, :, None, 0] * to_a[:, None, :, 1] - d[:, :, None, 1] * to_a[:, None, :, 0]
-    right = d[:, :, None, 0] * to_b[:, None, :, 1] - d[:, :, None, 1] * to_b[:, None, :, 0]
-    return float((left * right <= 0.0).any(2).mean())
+    d = (q[None] - p[:, None]).reshape(-1, 2)
+    # The cross product of d and (end - p) tells on which side of the segment an end of a piece lies.
+    normal = np.stack([-d[:, 1], d[:, 0]], axis=1)
+    own = (normal.reshape(len(p), len(q), 2) * p[:, None]).sum(2).reshape(-1, 1)
+    sides = normal @ pieces.reshape(-1, 2).T - own
+    return np.count_nonzero((sides[:, ::2] * sides[:, 1::2] <= 0.0).any(1)) / len(d)
 
 
 def _thin(a: Region, b: Region, most: int = 16) -> Array:

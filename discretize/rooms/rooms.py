@@ -1,10 +1,9 @@
 """Cut a plan into few cells that look like rooms and hallways."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import shapely
 
+from discretize.partition import Partition
 from discretize.rooms.candidates import candidate_cuts
 from discretize.rooms.faces import arrangement
 from discretize.rooms.fitting import fit
@@ -14,28 +13,12 @@ from discretize.rooms.search import best_partition
 from discretize.rooms.structure import structure
 from maps import FloorPlan
 
-__all__ = ["RoomCut", "room_cells"]
-
-
-@dataclass(frozen=True, slots=True)
-class RoomCut:
-    """A plan cut into rooms and hallways.
-
-    Attributes
-    ----------
-    cells : tuple of shapely.Polygon
-        They cover the free space and do not overlap. A cell has holes where small obstacles stand in it.
-    notes : tuple of str
-        What a report should say about how they were made.
-    """
-
-    cells: tuple[shapely.Polygon, ...]
-    notes: tuple[str, ...]
+__all__ = ["room_cells"]
 
 
 def room_cells(
     plan: FloorPlan, *, tolerance: float = 0.1, radius: float = 0.2, rng: np.random.Generator | None = None
-) -> RoomCut:
+) -> Partition:
     """Cut a plan into few room- and hallway-like cells that are nearly convex.
 
     Cuts from reflex vertices, doorways first, make an arrangement of faces. Unions of faces that stay nearly convex and
@@ -59,7 +42,7 @@ def room_cells(
     scan = any(repair.kind == "removed furniture" for repair in plan.repairs)
     allowed = 2 * tolerance if scan else tolerance
     limits = Limits(1 - allowed, 1 - allowed, 0.6, 0.3) if scan else Limits(1 - allowed, 1 - allowed, 0.7, 0.4)
-    space = structure(plan.space, radius if scan else radius / 2, 4 * radius, 25 * radius if scan else 0.0)
+    space = structure(plan.space, radius if scan else radius / 2, 4 * radius, 25 * radius if scan else 0.0, plan.doors)
     doors = np.array([shapely.get_coordinates(door)[[0, -1]] for door in plan.doors]).reshape(-1, 2, 2)
     cuts, doorways = candidate_cuts(space, doors, allowed, 2 * radius)
     faces = arrangement(space, cuts, doorways, doors)
@@ -68,6 +51,4 @@ def room_cells(
     for k, region in enumerate(chosen):
         owner[list(region.faces)] = k
     cells = fit(plan.space, faces, absorb(faces, owner, radius), reach=3 * radius)
-    if scan:
-        notes = (f"A scan of a furnished place: cells may miss convexity by {allowed:g} of their hulls.", *notes)
-    return RoomCut(tuple(cells), notes)
+    return Partition(tuple(cells), allowed, strict=False, notes=notes)

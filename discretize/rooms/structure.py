@@ -1,5 +1,7 @@
 """The plan without its clutter: what cuts and convexity are judged on."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
 
@@ -10,7 +12,9 @@ SOLID = 0.4  # least share of that rectangle that furniture fills; walls that me
 SLENDER = 3.0  # how many times longer than wide a piece of wall is at least
 
 
-def structure(space: shapely.Geometry, detail: float, clutter: float, furniture: float) -> shapely.MultiPolygon:
+def structure(
+    space: shapely.Geometry, detail: float, clutter: float, furniture: float, doors: Sequence[shapely.LineString] = ()
+) -> shapely.MultiPolygon:
     """Fill small obstacles that stand free and straighten walls.
 
     Parameters
@@ -23,6 +27,8 @@ def structure(space: shapely.Geometry, detail: float, clutter: float, furniture:
         An obstacle that touches no wall and is no longer than this is filled, metres.
     furniture : float
         So is one no longer than this that is not slender, as a piece of wall is, metres.
+    doors : sequence of shapely.LineString
+        Walls stay where they are at the ends of these.
     """
     parts, thin = [], []
     for part in shapely.get_parts(space):
@@ -31,11 +37,31 @@ def structure(space: shapely.Geometry, detail: float, clutter: float, furniture:
         thin += [shapely.Polygon(ring) for ring, is_slim in zip(holes, slim, strict=True) if is_slim]
         thick = [_from_outermost(ring) for ring, is_slim in zip(holes, slim, strict=True) if not is_slim]
         parts.append(shapely.Polygon(_from_outermost(part.exterior), thick))
-    simple: shapely.Geometry = shapely.set_precision(shapely.simplify(shapely.MultiPolygon(parts), detail), GRID)
+    simple = shapely.set_precision(_straightened(shapely.MultiPolygon(parts), detail, doors), GRID)
     # Straightening would flatten a free-standing wall thinner than this to nothing and so open what it divides.
     walls = shapely.union_all(shapely.simplify(np.array(thin, dtype=object), detail / 4))
     simple = shapely.difference(simple, walls, grid_size=GRID)
     return shapely.MultiPolygon([p for p in shapely.get_parts(simple) if p.geom_type == "Polygon"])
+
+
+def _straightened(space: shapely.MultiPolygon, detail: float, doors: Sequence[shapely.LineString]) -> shapely.Geometry:
+    """Drop vertices by which walls move by at most ``detail``, but none at which a door ends."""
+    if not doors:
+        return shapely.simplify(space, detail)
+    ends = [line for door in doors for line in _carried_on(door)]
+    # Simplification keeps the ends of lines, so walls are taken apart where a door meets them.
+    pieces = shapely.get_parts(shapely.union_all([shapely.boundary(space), *ends]))
+    lines = shapely.simplify(shapely.MultiLineString(pieces.tolist()), detail)
+    faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(shapely.union_all(lines))))
+    free = shapely.area(shapely.intersection(faces, space)) > 0.5 * shapely.area(faces)
+    return shapely.union_all(faces[free])
+
+
+def _carried_on(door: shapely.LineString) -> list[shapely.LineString]:
+    """Return short lines across both ends of a door, so that they surely cross the walls there."""
+    p = shapely.get_coordinates(door)[[0, -1]]
+    along = GRID * (p[1] - p[0]) / np.hypot(*(p[1] - p[0]))
+    return [shapely.LineString([end - along, end + along]) for end in p]
 
 
 def _is_clutter(ring: shapely.LinearRing, clutter: float, furniture: float) -> bool:

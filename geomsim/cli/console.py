@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -45,7 +46,16 @@ def say(line: str) -> None:
 
 def say_json(result: dict[str, Any]) -> None:
     """Print one JSON object on stdout, on one line."""
-    say(json.dumps(result, allow_nan=False))
+    say(json.dumps(_without_infinity(result), allow_nan=False))
+
+
+def _without_infinity(value: Any) -> Any:
+    """Return a value with null for what has no limit, such as the range of one of several robots."""
+    if isinstance(value, dict):
+        return {key: _without_infinity(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_infinity(one) for one in value]
+    return None if value == math.inf else value
 
 
 def finish_stdout() -> None:

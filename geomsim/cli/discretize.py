@@ -20,7 +20,7 @@ __all__ = ["discretize"]
 def discretize(
     plan: str,
     *,
-    method: Annotated[str, Parameter(help="How to cut: exact, rooms, quine-mccluskey or visibility.")] = "exact",
+    method: Annotated[str, Parameter(help="How to cut: rooms, exact, quine-mccluskey or visibility.")] = "rooms",
     cells: Annotated[
         Path | None, Parameter(help="Cells that this command wrote and a person may have changed, to be checked.")
     ] = None,
@@ -74,6 +74,7 @@ def _result(cells: CellMap, report: CellReport, certificate: Certificate, second
         "coverage": report.coverage,
         "overlap": report.overlap,
         "convexity": report.convexity,
+        "tolerance": report.tolerance,
         "free_components": report.free_components,
         "graph_components": report.graph_components,
         "pockets": list(report.pockets),
@@ -94,7 +95,8 @@ def _result(cells: CellMap, report: CellReport, certificate: Certificate, second
 def _tell(told: dict[str, Any], radius: float) -> None:
     size = f"{told['cells']} cells, {told['portals']} portals, {told['area']:.1f} m2"
     say(f"{told['plan']}: {size}, {told['seconds']:.2f} s")
-    say(f"covered {told['coverage']:.9f}, overlap {told['overlap']:.1e}, least convexity {told['convexity']:.6f}")
+    say(f"covered {told['coverage']:.9f}, overlap {told['overlap']:.1e}")
+    say(f"area of a cell over its convex hull's: at least {told['convexity']:.6f}{_promise(told['tolerance'])}")
     say(f"connected parts of the free space: {told['free_components']}, of the cell graph: {told['graph_components']}")
     bounds = told["certificate"]
     at_least = max(bounds["reflex_bound"], bounds["hidden_bound"])
@@ -108,3 +110,10 @@ def _tell(told: dict[str, Any], radius: float) -> None:
         say(f"  {sentence}")
     for kind, path in told["files"].items():
         say(f"{kind + ':':<10} {path}")
+
+
+def _promise(tolerance: float) -> str:
+    """Words for how nearly convex cells should be."""
+    if tolerance == 1:
+        return ""
+    return f" (tolerance {tolerance:g}, small obstacles and what is too narrow for the robot left out)"

@@ -58,6 +58,9 @@ class DrawFlags:
         Do not show the evader before it is captured.
     numbers
         Show the number of each cell that has room for it, in video and frames.
+    belief_of
+        Number of the robot whose own belief the video shows, where every robot plans for itself. [default: what all
+        robots have seen]
     """
 
     video: bool = True
@@ -75,6 +78,7 @@ class DrawFlags:
     theme: str = "light"
     hide_evader: bool = False
     numbers: bool = False
+    belief_of: int | None = None
 
     def check(self) -> None:
         """Refuse what cannot be drawn, before hours are spent on what there is to draw."""
@@ -132,7 +136,13 @@ class DrawFlags:
         from geomsim.drawing import FrameStyle
 
         evader = "hidden" if self.hide_evader else "shown"
-        return FrameStyle(size=self._size() or (1280, 720), theme=self.theme, evader=evader, numbers=self.numbers)
+        return FrameStyle(
+            size=self._size() or (1280, 720),
+            theme=self.theme,
+            evader=evader,
+            numbers=self.numbers,
+            belief_of=self.belief_of,
+        )
 
     def _size(self) -> tuple[int, int] | None:
         if self.size is None:

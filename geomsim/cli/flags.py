@@ -86,19 +86,33 @@ class ScenarioFlags(PlanFlags):
         Cells that the planner looks ahead. [default: 5]
     option
         Another parameter of the planner, as NAME=VALUE; may be given several times.
+    checkpoints
+        Where robots decide anew: centroids, of cells, or boundaries, where they pass from cell to cell as well.
+        [default: centroids]
+    communication
+        Who plans: central, one planner for all; full, every robot for itself, hearing all others; range or sight,
+        every robot for itself, hearing those within a range or in sight. [default: central]
+    communication_range
+        How far robots hear each other, metres. [default: without limit]
     capture
         What counts as capture: sight, a free line of sight to the evader, or cell, being in its cell. [default:
         sight]
+    belief_capture
+        What the belief counts on: cell, catching whoever is in the same cell, or sight, whoever is seen. [default:
+        cell]
     range
-        How far a robot sees, metres. [default: without limit]
+        How far a robot sees, metres; one for all or one each, like 5,8. [default: without limit]
     fov_degrees
-        Field of view of a robot, degrees. [default: 360]
+        Field of view of a robot, degrees; one for all or one each. [default: 360]
     detection
-        Probability that a robot notices, within a second, an evader that stays in view. [default: 1]
+        Probability that a robot notices, within a second, an evader that stays in view; one for all or one each.
+        [default: 1]
     speed
-        Speed of the robots, metres a second. [default: 1]
+        Speed of the robots, metres a second; one for all or one each. [default: 1]
     radius
         Radius of the robots, metres. [default: 0.2]
+    evaders
+        How many there are to be found. [default: 1]
     evader
         How the evader moves: centroid-boundary, still, shortest-paths, hiding or fleeing. [default:
         centroid-boundary]
@@ -109,11 +123,12 @@ class ScenarioFlags(PlanFlags):
     evader_radius
         Its radius, metres. [default: 0.2]
     motion
-        How the robots believe it moves: area-speed-degree, uniform or stationary. [default: area-speed-degree]
+        How the robots believe it moves: area-speed-degree, dwell-time, uniform or stationary. [default:
+        area-speed-degree]
     motion_speed
         How fast they believe it to be, metres a second. [default: as fast as it is]
     method
-        How the plan is cut into cells. [default: exact]
+        How the plan is cut into cells. [default: rooms]
     cells
         GeoJSON of cells that `geomsim discretize` wrote and a person may have changed, instead of a method.
     clearance
@@ -133,12 +148,17 @@ class ScenarioFlags(PlanFlags):
     cost: str | None = None
     depth: WholeNumber = None
     option: tuple[str, ...] = ()
+    checkpoints: str | None = None
+    communication: str | None = None
+    communication_range: float | None = None
     capture: str | None = None
-    range: float | None = None
-    fov_degrees: float | None = None
-    detection: float | None = None
-    speed: float | None = None
+    belief_capture: str | None = None
+    range: str | None = None
+    fov_degrees: str | None = None
+    detection: str | None = None
+    speed: str | None = None
     radius: float | None = None
+    evaders: WholeNumber = None
     evader: str | None = None
     evader_start: WholeNumber = None
     evader_speed: float | None = None
@@ -162,9 +182,24 @@ class ScenarioFlags(PlanFlags):
                 raise GeomsimError(
                     f"--start takes cell numbers with commas between them, not {self.start!r}."
                 ) from None
+        for name in ("range", "fov_degrees", "detection", "speed"):
+            if told[name] is not None:
+                told[name] = _numbers(name, told[name])
         if self.option:
             told["options"] = dict(_option(text) for text in self.option)
         return {key: value for key, value in told.items() if value is not None}
+
+
+def _numbers(name: str, text: str) -> float | tuple[float, ...]:
+    """Read one number for all robots, or one for each."""
+    try:
+        numbers = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise GeomsimError(
+            f"--{name.replace('_', '-')} takes a number for all robots, or one each with commas between them, "
+            f"not {text!r}."
+        ) from None
+    return numbers[0] if len(numbers) == 1 else numbers
 
 
 def _option(text: str) -> tuple[str, bool | int | float | str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -12,7 +12,7 @@ from geomsim.cli.drawing import DrawFlags
 from geomsim.cli.flags import JsonFlag, OutFlag, ScenarioFlags
 
 if TYPE_CHECKING:
-    from geomsim.episode import Episode
+    from geomsim.episode import Capture, Episode
 
 __all__ = ["run"]
 
@@ -97,9 +97,19 @@ def _unreached(episode: Episode) -> list[str]:
     return [f"{apart} of {len(parts)} cells cannot be reached from the start by a body of radius {radius:g} m."]
 
 
+def _told(capture: Capture) -> dict[str, Any]:
+    return {
+        "evader": capture.evader + 1,
+        "time": capture.time,
+        "captured_by": capture.pursuer + 1,
+        "cell": capture.cell + 1,
+        "position": capture.position,
+    }
+
+
 def _report(episode: Episode, files: dict[str, Path], *, json: bool) -> None:
     out = episode.outcome
-    notes = [*_unreached(episode), *out.notes]
+    notes = [*episode.cells.notes, *_unreached(episode), *out.notes]
     if json:
         say_json(
             {
@@ -109,6 +119,7 @@ def _report(episode: Episode, files: dict[str, Path], *, json: bool) -> None:
                 "captured_by": None if out.pursuer is None else out.pursuer + 1,
                 "capture_position": out.position,
                 "capture_cell": None if out.cell is None else out.cell + 1,
+                "captures": [_told(capture) for capture in out.captures],
                 "predicted_capture_probability": out.predicted,
                 "cells": len(episode.cells),
                 "seed": episode.scenario["seed"],
@@ -120,8 +131,14 @@ def _report(episode: Episode, files: dict[str, Path], *, json: bool) -> None:
         return
     told = episode.scenario
     say(f"{episode.plan.name}: {len(episode.cells)} cells, {_count(told['pursuers'])}, seed {told['seed']}")
-    where = "" if out.position is None else f", at ({out.position[0]:.1f}, {out.position[1]:.1f}) m"
+    several = episode.evaders.shape[1] > 1
+    where = "" if several or out.position is None else f", at ({out.position[0]:.1f}, {out.position[1]:.1f}) m"
     say(f"{episode}{where}")
+    for capture in out.captures if several else ():
+        say(
+            f"evader {capture.evader + 1}: after {capture.time:.1f} s by pursuer {capture.pursuer + 1}, "
+            f"in cell {capture.cell + 1}, at ({capture.position[0]:.1f}, {capture.position[1]:.1f}) m"
+        )
     say(f"chance of capture by then that the belief predicted: {out.predicted:.2f}")
     for note in notes:
         say(note)

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geomsim.drawing.colours import mixed
+from geomsim.drawing.moment import Moment
 from geomsim.drawing.surface import Surface
 from geomsim.drawing.theme import Theme
 from geomsim.drawing.viewport import Viewport
@@ -64,26 +65,21 @@ class Figures:
         surface.disc(pixels[-1], 2.6 * self._unit, self._theme.casing)
 
     def bodies(
-        self,
-        surface: Surface,
-        pursuers: Array,
-        headings: Array,
-        evader: Array | None = None,
-        *,
-        captured: bool = False,
-        prefix: str = "",
-        last: int = -1,
+        self, surface: Surface, moment: Moment, *, hidden: bool = False, prefix: str = "", last: int = -1
     ) -> None:
-        """Draw the robots, ``last`` on top, and below them the evader, where it is to be seen.
+        """Draw the robots, ``last`` on top, and below them the evaders.
 
-        Those in one place are drawn beside each other, so that all can be read.
+        Evaders that are not captured yet are drawn only if they are not ``hidden``; they are numbered if there are
+        several. Those in one place are drawn beside each other, so that all can be read.
         """
-        places = pursuers if evader is None else np.vstack([pursuers, evader])
+        team, caught = len(moment.pursuers), {capture.evader for capture in moment.captures}
+        shown = [k for k in range(len(moment.evaders)) if k in caught or not hidden]
+        places = np.vstack([moment.pursuers, moment.evaders[shown]])
         centres = apart(self._view.pixels(places), 19.0 * self._unit)
-        if evader is not None:
-            self._evader(surface, centres[-1], captured)
-        for number in sorted(range(len(pursuers)), key=lambda k: k == last):
-            self._robot(surface, number, centres[number], float(headings[number]), prefix)
+        for k, centre in zip(shown, centres[team:], strict=True):
+            self._evader(surface, centre, "E" if len(moment.evaders) == 1 else f"E{k + 1}", captured=k in caught)
+        for number in sorted(range(team), key=lambda k: k == last):
+            self._robot(surface, number, centres[number], float(moment.headings[number]), prefix)
 
     def _robot(self, surface: Surface, number: int, centre: Array, heading: float, prefix: str) -> None:
         """Draw a robot with its number, from 1, and a beak where it is heading."""
@@ -98,15 +94,15 @@ class Figures:
         ends = np.stack([self._view.pixels(pursuer), self._view.pixels(evader)])
         surface.line(ends, self._theme.evader, 2.0 * self._unit)
 
-    def _evader(self, surface: Surface, centre: Array, captured: bool) -> None:
-        """Draw the evader, a diamond with an E; a ring around it once it is captured."""
+    def _evader(self, surface: Surface, centre: Array, name: str, *, captured: bool) -> None:
+        """Draw an evader, a diamond with its name; a ring around it once it is captured."""
         radius = 12.0 * self._unit
         if captured:
             _ring(surface, centre, radius + 6.0 * self._unit, self._theme.evader, 2.2 * self._unit)
         for grown, colour in ((2.4 * self._unit, self._theme.casing), (0.0, self._theme.evader)):
             reach = radius + grown
             surface.polygon([centre + reach * np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])], colour)
-        self._label(surface, "E", centre, 12.0)
+        self._label(surface, name, centre, 12.0)
 
     def _label(self, surface: Surface, text: str, centre: Array, size: float) -> None:
         size *= self._unit * min(1.0, 2.1 / (len(text) + 0.6))

@@ -12,7 +12,7 @@ from geomsim.drawing.colours import lightness
 from geomsim.drawing.figures import Figures
 from geomsim.drawing.floor import Floor
 from geomsim.drawing.legend import draw_colour_bar, draw_scale_bar
-from geomsim.drawing.moment import Moment, Timeline, shares
+from geomsim.drawing.moment import Moment, Timeline, beliefs_of, shares
 from geomsim.drawing.raster import Image, Raster, blank
 from geomsim.drawing.scale import ProbabilityScale
 from geomsim.drawing.sight import Sight
@@ -44,6 +44,8 @@ class FrameStyle:
         Layers: cells shaded by probability, what each robot sees, where it intends to go, where it came from.
     numbers : bool
         Layer: the number of each cell that has room for it.
+    belief_of : int or None
+        Number of the robot whose own belief is shown, from 1; None for what all robots have seen together.
     note : str
         Something to say beside the time, such as the speed of a video.
     """
@@ -56,6 +58,7 @@ class FrameStyle:
     plans: bool = True
     trails: bool = True
     numbers: bool = False
+    belief_of: int | None = None
     note: str = ""
 
     def __post_init__(self) -> None:
@@ -109,7 +112,8 @@ class FrameDrawer:
         self._figures = Figures(self._floor.view, theme, unit, episode.pursuers.shape[1])
         self._strip = CaptureStrip(episode, strip_box, theme, unit)
         self._sight = Sight(episode)
-        self._scale = ProbabilityScale.of(episode.beliefs)
+        self._beliefs = beliefs_of(episode, style.belief_of)
+        self._scale = ProbabilityScale.of(self._beliefs)
         self._background = self._draw_background(legend_box)
         self._canvas = _Canvas()
 
@@ -140,15 +144,8 @@ class FrameDrawer:
                 figures.route(surface, r, moment.routes[r])
         by = self.episode.outcome.pursuer
         if moment.captured and by is not None:
-            figures.spotting(surface, moment.pursuers[by], moment.evader)
-        figures.bodies(
-            surface,
-            moment.pursuers,
-            moment.headings,
-            moment.evader if style.evader == "shown" or moment.captured else None,
-            captured=moment.captured,
-            last=-1 if by is None else by,
-        )
+            figures.spotting(surface, moment.pursuers[by], moment.evaders[self.episode.outcome.evader])
+        figures.bodies(surface, moment, hidden=style.evader == "hidden", last=-1 if by is None else by)
         self._strip.draw(surface, moment)
         self._draw_time(surface, moment)
         return image
@@ -156,7 +153,7 @@ class FrameDrawer:
     def _painted_floor(self, step: int) -> Image:
         if self._canvas.step != step:
             image = self._background.copy()
-            share = shares(self.episode.beliefs[step]) if self.style.belief else np.zeros(len(self.episode.cells))
+            share = shares(self._beliefs[step]) if self.style.belief else np.zeros(len(self.episode.cells))
             colours = self._theme.ramp[self._scale.steps(share)]
             self._floor.paint(Raster(image), colours)
             if self.style.numbers:
@@ -180,6 +177,7 @@ class FrameDrawer:
         self._strip.draw_axes(surface)
         if self.style.belief:
             title = "chance that the evader is in a cell, if not captured"
+            title += "" if self.style.belief_of is None else f" (robot {self.style.belief_of})"
             draw_colour_bar(surface, legend, self._scale, theme, unit, title)
         draw_scale_bar(surface, legend, self._floor.view.scale, theme, unit)
         at = (16 * unit, 23 * unit)

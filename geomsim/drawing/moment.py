@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from discretize import CellMap
-from geomsim.episode import Episode
+from geomsim.drawing.theme import DrawingError
+from geomsim.episode import Capture, Episode
 
-__all__ = ["Moment", "Timeline", "shares"]
+__all__ = ["Moment", "Timeline", "beliefs_of", "shares"]
 
 Array = NDArray[np.float64]
 
@@ -30,10 +31,12 @@ class Moment:
         Radians.
     cells : ndarray of int32, shape (R,)
         Cell that each pursuer is in, counted from 0.
-    evader : ndarray, shape (2,)
-        Position, metres.
+    evaders : ndarray, shape (E, 2)
+        Positions, metres.
+    captures : tuple of Capture
+        Those up to then.
     captured : bool
-        Whether the evader has been captured by then.
+        Whether all evaders have been captured by then.
     step : int
         Index of the last belief step.
     trails : tuple of ndarray, each of shape (k, 2)
@@ -46,7 +49,8 @@ class Moment:
     pursuers: Array
     headings: Array
     cells: NDArray[np.int32]
-    evader: Array
+    evaders: Array
+    captures: tuple[Capture, ...]
     captured: bool
     step: int
     trails: tuple[Array, ...]
@@ -88,7 +92,8 @@ class Timeline:
             pursuers=pursuers,
             headings=episode.headings[i] + part * turn,
             cells=episode.pursuer_cells[i if part < 0.5 else j],
-            evader=_between(episode.evader, i, j, part),
+            evaders=_between(episode.evaders, i, j, part),
+            captures=tuple(capture for capture in out.captures if time >= capture.time - 1e-9),
             captured=out.captured and time >= out.time - 1e-9,
             step=max(int(np.searchsorted(episode.belief_times, time + 1e-9, side="right")) - 1, 0),
             trails=tuple(self._trail_of(r, i, time, pursuers[r]) for r in range(len(pursuers))),
@@ -124,7 +129,7 @@ class Timeline:
             stops = [int(episode.pursuer_cells[i, pursuer]), *(int(c) for c in episode.decision_paths[k])]
             pieces = [episode.pursuers[i, pursuer][None]]
             for a, b in pairwise(stops):
-                pieces.extend(self._legs.get((a, b), (episode.cells.checkpoints[b][None],)) if a != b else ())
+                pieces.extend(self._legs.get((a, b), (episode.cells.checkpoints[b][None],)))
             self._ways[k] = np.vstack(pieces)
         return self._ways[k]
 
@@ -133,6 +138,24 @@ def shares(belief: Array) -> Array:
     """Return for each cell the chance that the evader is there if it has not been captured, shape (N,)."""
     free = 1.0 - belief[0]
     return belief[1:] / free if free > 1e-12 else np.zeros(len(belief) - 1)
+
+
+def beliefs_of(episode: Episode, robot: int | None) -> Array:
+    """Return the beliefs of a robot, numbered from 1, or those by all looks for None; shape (B, N + 1).
+
+    Raises
+    ------
+    DrawingError
+        If there is no such robot, or one planner planned for all.
+    """
+    if robot is None:
+        return episode.beliefs
+    robots = episode.own_beliefs.shape[1]
+    if not robots:
+        raise DrawingError("The robots of this episode have no beliefs of their own: one planner planned for all.")
+    if not 1 <= robot <= robots:
+        raise DrawingError(f"There is no robot {robot}; robots are numbered from 1 to {robots}.")
+    return episode.own_beliefs[:, robot - 1]
 
 
 def _between(values: Array, i: int, j: int, part: float) -> Array:

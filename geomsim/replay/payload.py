@@ -13,6 +13,7 @@ from geomsim.drawing.colours import hex_colour, mixed
 from geomsim.drawing.floor import inner_boundaries, thin_walls
 from geomsim.drawing.moment import Timeline, shares
 from geomsim.drawing.scale import ProbabilityScale
+from geomsim.drawing.sight import eyes
 from geomsim.drawing.theme import THEMES, Theme
 from geomsim.episode import Episode
 
@@ -38,8 +39,8 @@ def payload(episode: Episode) -> Record:
     steps = _thinned(len(episode.times), every)
     cells = len(episode.cells)
     beliefs = _thinned(len(episode.belief_times), max(1, math.ceil(len(episode.belief_times) * cells / _MOST_CHANCES)))
-    out, told = episode.outcome, episode.scenario
-    moving = np.concatenate([episode.pursuers[steps].reshape(len(steps), -1), episode.evader[steps]], axis=1)
+    out = episode.outcome
+    moving = np.concatenate([episode.pursuers, episode.evaders], axis=1)[steps].reshape(len(steps), -1)
     roots = [np.sqrt(np.append(b[:1], shares(b))) * _ROOT for b in episode.beliefs[beliefs]]
     return {
         "name": episode.plan.name,
@@ -51,10 +52,10 @@ def payload(episode: Episode) -> Record:
         "cells": _cells(episode),
         "top": ProbabilityScale.of(episode.beliefs).top,
         "robots": episode.pursuers.shape[1],
+        "evaders": episode.evaders.shape[1],
         "sight": {
-            "byCell": told.get("capture") == "cell",
-            "range": _finite(float(told.get("range", math.inf))),
-            "field": math.radians(float(told.get("fov_degrees", 360.0))),
+            "byCell": episode.scenario.get("capture") == "cell",
+            "eyes": [{"range": _finite(reach), "field": field} for reach, field in eyes(episode)],
         },
         "times": _differences(episode.times[steps][:, None] * 1000),
         "moves": _differences(moving * 100),
@@ -68,6 +69,8 @@ def payload(episode: Episode) -> Record:
             "robot": None if out.pursuer is None else out.pursuer + 1,
             "cell": None if out.cell is None else out.cell + 1,
             "status": out.status.value,
+            "evader": out.evader,
+            "captures": [{"evader": capture.evader, "time": capture.time} for capture in out.captures],
         },
         "themes": {name: _theme(theme) for name, theme in THEMES.items()},
     }

@@ -134,11 +134,12 @@ def meet(
     """
     from geomsim.trials.kernels import Lookers, blocked_moves
 
-    sensor, timing, team = experiment.team.sensor, experiment.timing, experiment.team
+    sensors, timing = experiment.team.sensors, experiment.timing
     grid = WallGrid.of(experiment.cells.plan.walls)
-    each = np.ones(team.pursuers)
     lookers = Lookers(
-        sensor.range * each, sensor.field_of_view / 2 * each, sensor.attention * timing.physics_step * each
+        np.array([sensor.range for sensor in sensors]),
+        np.array([sensor.field_of_view for sensor in sensors]) / 2,
+        np.array([sensor.attention for sensor in sensors]) * timing.physics_step,
     )
     trials = sorted(set().union(*free.values()))
     passes = [_Pass(experiment, grid, lookers, m, runs[m], free[m]) for m in free]
@@ -175,7 +176,7 @@ class _Pass:
         self._single = runs[0].run if len(runs) == 1 and not runs[0].drew else None
         self.free = set(free)
         patience = np.ones((experiment.trials, experiment.team.pursuers))
-        if experiment.team.sensor.detection < 1:
+        if any(sensor.detection < 1 for sensor in experiment.team.sensors):
             patience[list(free)] = experiment.patience(np.array(free, dtype=np.intp))
         self._looked = Looked(patience, np.zeros_like(patience))
 

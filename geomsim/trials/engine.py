@@ -120,6 +120,8 @@ def run_trials(
 
         cells = convex_cells(plan, radius=max(team.radius, evader.radius))
     check_pursuit(cells, team, evader, capture)
+    if evader.count > 1:
+        raise GeomsimError(f"A trial has one evader, but {evader.count} were asked for; run them one at a time.")
     reacts = bool(getattr(evader.model, "reacts", False))
     experiment = Experiment(
         cells=cells,
@@ -172,13 +174,14 @@ def _check_start(experiment: Experiment) -> None:
         if set(experiment.hideouts) <= set(experiment.starts):
             raise GeomsimError("The evader starts in a pursuer's cell in every trial; there is nothing to search for.")
         return
-    if experiment.team.sensor.detection < 1:
+    if any(sensor.detection < 1 for sensor in experiment.team.sensors):
         return
     at = experiment.cells.checkpoints
     eyes = at[list(experiment.starts)]
     world = World(experiment.cells.plan.walls, eyes[:1], np.array([experiment.team.radius]))
     for hideout in sorted(set(experiment.hideouts)):
-        if not any(experiment.team.sensor.sees(world, eye, 0.0, at[hideout]) for eye in eyes):
+        looks = zip(experiment.team.sensors, eyes, strict=True)
+        if not any(sensor.sees(world, eye, 0.0, at[hideout]) for sensor, eye in looks):
             return
     raise GeomsimError(
         "The team sees the evader from where it starts, in whichever cell that is; start it elsewhere, or shorten "

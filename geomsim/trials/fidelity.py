@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geomsim.pursuit import believed_capture
+from geomsim.believing import believed_problem
 from geomsim.seeds import Streams
 from geomsim.trials.experiment import Experiment
 from geomsim.trials.statistics import Survival
@@ -17,11 +17,9 @@ from planners import (
     Planner,
     Policy,
     Prediction,
-    SearchGraph,
     SearchProblem,
     TooLargeError,
     predict,
-    uniform_belief,
 )
 
 __all__ = ["Forecast", "forecast"]
@@ -78,11 +76,9 @@ def forecast(experiment: Experiment, method: int) -> Forecast | None:
     The answer is exact, but for a planner that draws random numbers and whose Markov chain is too large: then it is
     the mean of 20 runs, each exact. There is none where the team believes that it may never capture.
     """
-    graph = SearchGraph.from_cells(experiment.cells)
     team, timing, starts = experiment.team_for(method), experiment.timing, experiment.starts
-    speeds = (team.speed,) * team.pursuers
-    problem = SearchProblem(graph, experiment.motion, believed_capture(team, timing), speeds, timing.belief_step)
-    belief = uniform_belief(graph, exclude=starts, component=int(graph.component[starts[0]]))
+    roads, problem = believed_problem(experiment.cells, team, experiment.motion, timing.belief_step)
+    belief = problem.first_belief(starts, int(roads.graph.component[starts[0]]))
     seed, steps = experiment.seeds[0], max(1, math.ceil(timing.limit / timing.belief_step))
 
     def ask(planner: Planner, rng: np.random.Generator, residue: float) -> Prediction:

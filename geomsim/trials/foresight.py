@@ -31,7 +31,7 @@ def foresee(experiment: Experiment, runs: Sequence[TeamRun]) -> Forecast:
     """
     timing, team = experiment.timing, experiment.team
     watch = Watch(experiment.cells, experiment.motion, experiment.evader.speed, timing.physics_step)
-    first, sensors = watch.first_belief(experiment.starts), [team.sensor] * team.pursuers
+    first, sensors = watch.first_belief(experiment.starts), team.sensors
     curves = [watch.survival(Track(run.eyes, run.headings, timing.physics_step), sensors, first) for run in runs]
     means = [expected_looks(curve, timing.limit / watch.step) * watch.step for curve in curves]
     length = max(map(len, curves))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from discretize import WallGrid
-from geomsim.pursuit import HELD_UP, believed_capture
+from geomsim.pursuit import HELD_UP
 from geomsim.seeds import Streams
 from geomsim.teamwork import Teamwork
 from geomsim.trials.experiment import Experiment
@@ -90,10 +90,7 @@ def run_team(experiment: Experiment, method: int, runs: Sequence[int], steps: in
     timing, team = experiment.timing, experiment.team_for(method)
     deciding = [Streams(experiment.seeds[run]).deciding for run in runs]
     fresh = [rng.bit_generator.state for rng in deciding]
-    believed = believed_capture(team, timing)
-    work = Teamwork(
-        experiment.cells, team, experiment.starts, experiment.motion, believed, timing.belief_step, deciding
-    )
+    work = Teamwork(experiment.cells, team, experiment.starts, experiment.motion, timing.belief_step, deciding)
     eyes, headings, cells = [work.positions], [work.headings], [work.cells]
     held_up = work.idle >= HELD_UP
     for k in range(steps):

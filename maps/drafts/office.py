@@ -5,10 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
+import numpy as np
+from numpy.typing import NDArray
+
 from maps.drafting import Door, Room, draft_plan
 from maps.floorplan import FloorPlan
 
 __all__ = ["draft_office"]
+
+# Metres that one unit of the sketch stands for, set so that an evader walks into two pursuers that stand still after as
+# long as in the paper; and how wide hallways are, two units of the sketch: 2 m between walls.
+UNIT, HALLWAY = 2.216, 2.06
+
+# Where hallways run in the sketch, from west to east and from south to north.
+WEST_TO_EAST = ((5, 7), (22, 24), (34, 36), (55, 57))
+SOUTH_TO_NORTH = ((5, 7), (18, 20))
 
 # Numbers of the hallway pieces, by where they run; three rings of hallways side by side.
 TOP = {45: (5, 17), 44: (17, 31), 58: (31, 50), 57: (50, 57)}
@@ -40,7 +51,7 @@ DOORS = {
 
 
 def draft_office() -> FloorPlan:
-    """Draw an office floor of 62 m x 25 m around three rings of hallways.
+    """Draw an office floor of 128 m x 51 m around three rings of hallways.
 
     Its cell graph is the 60-vertex office graph published with the searchers of github.com/basfora/milp_mespp (MIT);
     vertex v is cell v + 1. Where the rooms lie is our own invention, no coordinates having been published.
@@ -65,8 +76,23 @@ def draft_office() -> FloorPlan:
         for hallway, rooms in DOORS.items()
         for k, room in enumerate(rooms)
     ]
-    rooms = hallways + north + west + south + east + core
+    rooms = [_built(room) for room in hallways + north + west + south + east + core]
     return draft_plan("office", rooms, doors, wall=0.06, start=(43, 44), source="bundled")
+
+
+def _built(room: Room) -> Room:
+    """Return a room of the sketch in metres."""
+    x, y = np.transpose(room.corners)
+    corners = np.transpose([_metres(x, WEST_TO_EAST), _metres(y, SOUTH_TO_NORTH)]).round(3)
+    return Room(room.number, room.name, tuple((float(a), float(b)) for a, b in corners))
+
+
+def _metres(sketched: NDArray[np.float64], hallways: Sequence[tuple[int, int]]) -> NDArray[np.float64]:
+    """Return the metres that coordinates of the sketch stand for, along one axis with its hallways."""
+    edges = [0.0, *(float(edge) for hallway in hallways for edge in hallway)]
+    pieces = [HALLWAY if k % 2 else (b - a) * UNIT for k, (a, b) in enumerate(pairwise(edges))]
+    beyond = np.maximum(sketched - edges[-1], 0.0) * UNIT
+    return np.asarray(np.interp(sketched, edges, np.cumsum([0.0, *pieces])) + beyond)
 
 
 def _row(numbers: Sequence[int], xs: Sequence[float], y0: float, y1: float) -> list[Room]:

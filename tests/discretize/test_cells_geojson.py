@@ -138,7 +138,7 @@ def broken(kind):
         ("removed", "lie in no cell, the most of it at ("),
         ("doubled", "lie in two cells"),
         ("bow tie", "feature 1: not a simple polygon (Self-intersection"),
-        ("hole", "feature 1: a cell has no holes"),
+        ("hole", "lie in no cell, the most of it at ("),
         ("two polygons", "feature 1: a cell is one polygon, not MultiPolygon"),
         ("no geometry", "feature 1: its geometry cannot be read"),
         ("text for a number", "feature 1: its number must be a whole number, not 'one'"),

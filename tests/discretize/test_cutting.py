@@ -7,7 +7,7 @@ import pytest
 import shapely
 from hypothesis import given, reject, settings
 
-from discretize import METHODS, CellMap, DiscretizeError, check_cells, convex_cells
+from discretize import METHODS, DiscretizeError, check_cells, convex_cells
 from maps import FloorPlan
 from tests.discretize.plans import grid_of_rooms, on_grid, pixel_plans, shard_plans, two_halls
 
@@ -34,7 +34,8 @@ def check_map(cellmap):
         for cell in (cellmap.cells[a], cellmap.cells[b]):
             assert cell.boundary.distance(middle) < 1e-6
             assert cell.boundary.distance(shapely.Point(portal.point)) < 1e-6
-        assert portal.width >= 2 * radius
+        if cellmap.strict:  # other cells may touch along lines that bend
+            assert portal.width >= 2 * radius
         for k, leg in zip(portal.cells, portal.legs, strict=True):
             assert len(leg) >= 2
             assert leg[0] == pytest.approx(cellmap.checkpoints[k], abs=1e-9)
@@ -49,18 +50,20 @@ def check_map(cellmap):
             assert clearance(plan, [point, point]) >= radius - 1e-6
 
 
+@pytest.mark.parametrize("method", ["exact", "rooms"])
 @pytest.mark.parametrize(("columns", "rows"), [(1, 1), (3, 1), (4, 3)])
-def test_rooms_in_a_grid(columns, rows):
+def test_rooms_in_a_grid(columns, rows, method):
     plan = grid_of_rooms(columns, rows)
-    cellmap = convex_cells(plan, radius=RADIUS)
+    cellmap = convex_cells(plan, method=method, radius=RADIUS)
     check_map(cellmap)
     report = check_cells(cellmap)
     assert report.problems == ()
     assert report.free_components == report.graph_components == 1
     assert report.coverage == pytest.approx(1, abs=1e-12)
     assert report.overlap <= 1e-12
-    assert report.convexity == pytest.approx(1, abs=1e-12)
+    assert report.convexity >= 1 - report.tolerance - 1e-12
     assert report.area == plan.area
+    assert method == "exact" or len(cellmap) == columns * rows
     crossed = [any(shapely.LineString(p.segment).equals(d) for p in cellmap.portals) for d in plan.doors]
     assert all(crossed)
 
@@ -85,7 +88,8 @@ def test_checkpoint_is_the_centroid_where_a_body_can_stand_there():
 
 def test_pocket_has_no_checkpoint_and_no_portal():
     space = on_grid(shapely.box(0, 0, 5, 4).union(shapely.box(5, 1, 8, 1.3)))
-    cellmap = convex_cells(FloorPlan("pocket", space, doors=(shapely.LineString([(2, 0), (2, 4)]),)), radius=RADIUS)
+    plan = FloorPlan("pocket", space, doors=(shapely.LineString([(2, 0), (2, 4)]),))
+    cellmap = convex_cells(plan, method="exact", radius=RADIUS)
     report = check_cells(cellmap)
     assert report.problems == ()
     for number in report.pockets:
@@ -106,21 +110,23 @@ def test_body_that_cannot_pass_the_middle_is_not_joined_there():
         assert report.free_components == report.graph_components == parts
 
 
+@pytest.mark.parametrize("method", ["exact", "rooms"])
 @settings(max_examples=100, deadline=None)
-@given(pixel_plans(pixel=1.0))
-def test_bitmaps(plan):
-    check_any(plan, 0.2)
+@given(plan=pixel_plans(pixel=1.0))
+def test_bitmaps(method, plan):
+    check_any(plan, method, 0.2)
 
 
+@pytest.mark.parametrize("method", ["exact", "rooms"])
 @settings(max_examples=100, deadline=None)
-@given(shard_plans())
-def test_shards(plan):
-    check_any(plan, 0.1)
+@given(plan=shard_plans())
+def test_shards(method, plan):
+    check_any(plan, method, 0.1)
 
 
-def check_any(plan, radius):
+def check_any(plan, method, radius):
     try:
-        cellmap = convex_cells(plan, radius=radius)
+        cellmap = convex_cells(plan, method=method, radius=radius)
     except DiscretizeError:
         reject()
     check_map(cellmap)
@@ -172,7 +178,9 @@ def test_every_method_says_what_it_is(name):
     assert method.name == name
     assert method.summary
     assert method.source
-    assert 0 <= method.convexity <= 1
+    cut = method.cut(two_halls())
+    assert 0 <= cut.tolerance < 1
+    assert sum(cell.area for cell in cut.cells) == pytest.approx(two_halls().area)
 
 
 def damaged(cellmap, kind):
@@ -198,9 +206,7 @@ def damaged(cellmap, kind):
         a, b = cellmap.portals[0].cells
         cells[a] = cells[a].union(cells[b])
         cells[b] = shapely.box(0, 0, 0.1, 0.1)
-    return CellMap(
-        cellmap.plan, tuple(cells), tuple(portals), cellmap.checkpoints, cellmap.radius, cellmap.method, cellmap.names
-    )
+    return replace(cellmap, cells=tuple(cells), portals=tuple(portals))
 
 
 @pytest.mark.parametrize(
@@ -218,7 +224,7 @@ def damaged(cellmap, kind):
 )
 def test_check_finds_what_is_broken(kind, words):
     plan = grid_of_rooms(3, 2)
-    cellmap = convex_cells(plan, radius=RADIUS)
+    cellmap = convex_cells(plan, method="exact", radius=RADIUS)
     assert check_cells(cellmap).problems == ()
     problems = check_cells(damaged(cellmap, kind)).problems
     assert any(words in p for p in problems), problems

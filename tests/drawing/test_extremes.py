@@ -17,7 +17,7 @@ from geomsim.video import write_video
 
 def over_at_once(episode: Episode) -> Episode:
     """Return the episode as if the evader had been in sight from the start."""
-    arrays = ["times", "pursuers", "headings", "pursuer_cells", "evader", "evader_cells", "belief_times", "beliefs"]
+    arrays = ["times", "pursuers", "headings", "pursuer_cells", "evaders", "evaders_cells", "belief_times", "beliefs"]
     first = {key: getattr(episode, key)[:1] for key in arrays}
     out = Outcome(Status.CAPTURED, 0.0, 0, tuple(episode.evader[0].tolist()), 1, 0.0)
     none = np.empty(0)

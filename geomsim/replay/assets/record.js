@@ -56,9 +56,11 @@ class Episode {
     return [mix(2 * body), mix(2 * body + 1)];
   }
 
-  evader(where) { return this.position(this.data.robots, where); }
+  evader(number, where) { return this.position(this.data.robots + number, where); }
 
   heading(robot, { i, j, part }) { return (1 - part) * this.headings.at(i, robot) + part * this.headings.at(j, robot); }
+
+  caught(number, t) { return this.data.outcome.captures.some((one) => one.evader === number && t >= one.time - 1e-6); }
 
   captured(t) { return this.data.outcome.captured && t >= this.data.outcome.time - 1e-6; }
 

@@ -143,19 +143,26 @@ class Scene {
     }
     if (layers.trails) for (const r of team) this.trail(context, episode.trail(r, where, t, 20), colour(r));
     if (layers.plans && !captured) for (const r of team) this.plan(context, episode.route(r, where, t), r, colour(r));
-    const evader = episode.evader(where);
     if (captured && data.outcome.robot) {
-      this.polyline(context, [episode.position(data.outcome.robot - 1, where), evader]);
+      const last = episode.evader(data.outcome.evader, where);
+      this.polyline(context, [episode.position(data.outcome.robot - 1, where), last]);
       context.strokeStyle = theme.evader;
       context.lineWidth = 2 * unit;
       context.stroke();
     }
-    if (layers.evader || captured) this.evader(context, evader, captured);
-    for (const r of team) this.robot(context, r, episode.position(r, where), episode.heading(r, where), colour(r));
+    const bodies = team.map((r) => episode.position(r, where)), shown = [];
+    for (let k = 0; k < data.evaders; k++) {
+      if (layers.evader || episode.caught(k, t)) shown.push(k); // what is hidden must not push what is shown
+    }
+    const places = apart([...bodies, ...shown.map((k) => episode.evader(k, where))].map((body) => this.pixel(body)), 19 * unit);
+    shown.forEach((k, n) => this.evader(context, places[data.robots + n], episode.caught(k, t), data.evaders > 1 ? `E${k + 1}` : "E"));
+    const last = captured && data.outcome.robot ? data.outcome.robot - 1 : data.robots - 1;
+    for (const r of [...team.filter((r) => r !== last), last]) this.robot(context, r, places[r], episode.heading(r, where), colour(r));
   }
 
   sight(context, robot, where, colour) {
-    const { range, field, byCell } = this.episode.data.sight, eye = this.episode.position(robot, where);
+    const { eyes, byCell } = this.episode.data.sight, { range, field } = eyes[robot];
+    const eye = this.episode.position(robot, where);
     context.save();
     context.globalAlpha = 0.38;
     context.fillStyle = colour;
@@ -206,8 +213,8 @@ class Scene {
     this.disc(context, end, 2.6 * unit, this.theme.casing);
   }
 
-  robot(context, number, place, heading, colour) {
-    const { unit, theme } = this, [x, y] = this.pixel(place), radius = 9.5 * unit;
+  robot(context, number, [x, y], heading, colour) {
+    const { unit, theme } = this, radius = 9.5 * unit;
     for (const [grown, fill] of [[1.8 * unit, theme.casing], [0, colour]]) {
       this.disc(context, [x, y], radius + grown, fill);
       context.beginPath();
@@ -219,8 +226,8 @@ class Scene {
     this.text(context, `${number + 1}`, [x, y], 12.5, theme.label, 700);
   }
 
-  evader(context, place, captured) {
-    const { unit, theme } = this, [x, y] = this.pixel(place), radius = 12 * unit;
+  evader(context, [x, y], captured, name) {
+    const { unit, theme } = this, radius = 12 * unit;
     if (captured) {
       context.beginPath();
       context.arc(x, y, radius + 6 * unit, 0, 2 * Math.PI);
@@ -235,8 +242,31 @@ class Scene {
       for (const [dx, dy] of [[1, 0], [0, 1], [-1, 0], [0, -1]]) context.lineTo(x + reach * dx, y + reach * dy);
       context.fill();
     }
-    this.text(context, "E", [x, y], 11.5, theme.label, 700);
+    this.text(context, name, [x, y], 11.5, theme.label, 700);
   }
+}
+
+// Places in pixels, moved away from each other until no two are nearer than a distance, or nearly so.
+function apart(places, distance) {
+  const turn = (2 * Math.PI) / places.length, nudge = 1e-3 * distance; // places that coincide part in directions of their own
+  const moved = places.map(([x, y], k) => [x + nudge * Math.cos(k * turn), y + nudge * Math.sin(k * turn)]);
+  for (let round = 0; round < 60; round++) {
+    const shift = moved.map(() => [0, 0]);
+    let most = 0;
+    for (let i = 0; i < moved.length; i++) {
+      for (let j = 0; j < i; j++) {
+        const dx = moved[i][0] - moved[j][0], dy = moved[i][1] - moved[j][1], away = Math.hypot(dx, dy);
+        if (away >= distance) continue;
+        const push = (distance - away) / 4 / Math.max(away, 1e-9);
+        shift[i][0] += dx * push; shift[i][1] += dy * push;
+        shift[j][0] -= dx * push; shift[j][1] -= dy * push;
+        most = Math.max(most, distance - away);
+      }
+    }
+    if (most < 0.01 * distance) break;
+    moved.forEach((place, k) => { place[0] += shift[k][0]; place[1] += shift[k][1]; });
+  }
+  return moved;
 }
 
 // The chance of capture over time: what is past drawn full, what is to come faint.

@@ -1,0 +1,65 @@
+"""The search problem that a team believes to be in: where it goes, what it catches, how the evader moves."""
+
+from __future__ import annotations
+
+import math
+
+from discretize import CellMap
+from geomsim.sensing import Sensor
+from geomsim.team import Team
+from planners import (
+    CaptureModel,
+    LineOfSight,
+    MotionInParts,
+    MotionModel,
+    OwnCell,
+    Roads,
+    SameCell,
+    SearchGraph,
+    SearchProblem,
+    SightMap,
+    StateSpace,
+)
+
+__all__ = ["believed_problem"]
+
+
+def believed_problem(
+    cells: CellMap, team: Team, motion: MotionModel, belief_step: float
+) -> tuple[Roads, SearchProblem]:
+    """Return the roads that a team goes on, and the problem that it plans for.
+
+    Parameters
+    ----------
+    cells : CellMap
+        Where.
+    team : Team
+        Who.
+    motion : MotionModel
+        How the evader is believed to move between cells.
+    belief_step : float
+        Seconds.
+    """
+    roads = Roads.of(cells, team.checkpoints)
+    if team.believes == "cell" and team.checkpoints == "centroids":
+        own = tuple(SameCell(_noticed(sensor, belief_step)) for sensor in team.sensors)
+        return roads, SearchProblem(roads.graph, motion, own, team.speeds, belief_step)
+    space = StateSpace.of_cells(len(cells))
+    captures: tuple[CaptureModel, ...]
+    if team.believes == "sight":
+        sights = SightMap.of(cells, roads, max(sensor.range for sensor in team.sensors))
+        space = sights.space
+        captures = tuple(
+            LineOfSight(sights, sensor.range, sensor.field_of_view, _noticed(sensor, belief_step))
+            for sensor in team.sensors
+        )
+    else:
+        kinds = {sensor: OwnCell(roads, space, _noticed(sensor, belief_step)) for sensor in team.sensors}
+        captures = tuple(kinds[sensor] for sensor in team.sensors)
+    split = MotionInParts(motion, SearchGraph.from_cells(cells), space)
+    return roads, SearchProblem(roads.graph, split, captures, team.speeds, belief_step, space)
+
+
+def _noticed(sensor: Sensor, belief_step: float) -> float:
+    """Return the probability of noticing within a belief step, an evader in view."""
+    return -math.expm1(-sensor.attention * belief_step)
