@@ -216,11 +216,12 @@ class Trials:
                     "trials": self.experiment.trials,
                     "predicted_mean": line.predicted,
                     "curve_gap": line.gap,
+                    "belief": self.experiment.team_for(k).belief,
                     "team_runs": line.run.runs,
                     "seconds": line.run.seconds,
                     "seconds_per_decision": line.run.seconds_per_decision,
                 }
-                for line in summary.methods
+                for k, line in enumerate(summary.methods)
             ],
             "reference": self.reference,
             "paired": [
