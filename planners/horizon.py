@@ -10,11 +10,16 @@ from numpy.typing import NDArray
 
 from planners.beam import BeamSearch
 from planners.branching import Certificate, JointSearch
+from planners.pathbeam import PathBeam
 from planners.policy import SearchProblem
 from planners.simulation import SearchModel
 from planners.team import TeamPolicy, at_least
 
 __all__ = ["BestResponse", "BranchAndBound", "Sequential", "respond"]
+
+# Paths that a beam search for an answer follows, where there are too many states for the best answer; twice as many
+# made no plan better on the bundled plans.
+_WIDTH = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,26 +85,35 @@ class BestResponse:
         Weight of each belief step relative to the one before it.
     patience : int
         Time between two searches, belief steps.
+    width : int
+        Most paths that the search for an answer follows of those that come to a checkpoint at about the same time;
+        0 lets it find the best answer there is where states are cells, and stands for 4 where they are parts of them,
+        see :class:`planners.pathbeam.PathBeam`.
 
     Raises
     ------
     PlannerError
-        If a number is below 1, or the discount below 0.
+        If a number is below 1, or the discount or width below 0.
     """
 
     horizon: int = 10
     rounds: int = 10
     discount: float = 1.0
     patience: int = 1
+    width: int = 0
 
     def __post_init__(self) -> None:
         at_least(1, horizon=self.horizon, rounds=self.rounds, patience=self.patience)
-        at_least(0, discount=self.discount)
+        at_least(0, discount=self.discount, width=self.width)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
         """Prepare a policy; nothing in it is random."""
-        search = JointSearch(SearchModel(problem), horizon=self.horizon, discount=self.discount)
-        return TeamPolicy(search.model, lambda *now: respond(search, *now, rounds=self.rounds), self.patience)
+        model = SearchModel(problem)
+        if self.width or problem.space is not None:
+            beam = PathBeam(model, horizon=self.horizon, discount=self.discount, width=self.width or _WIDTH)
+            return TeamPolicy(model, lambda *now: beam.respond(*now, rounds=self.rounds), self.patience)
+        search = JointSearch(model, horizon=self.horizon, discount=self.discount)
+        return TeamPolicy(model, lambda *now: respond(search, *now, rounds=self.rounds), self.patience)
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,8 +44,9 @@ def parse_method(name: str) -> Method:
         If there is no such planner or heuristic, or the planner does not take one.
     """
     if name.endswith(_ON_PLACES):
-        cells = parse_method(name.removesuffix(_ON_PLACES))
-        return Method(cells.name + _ON_PLACES, cells.planner, "places")
+        rest = name.removesuffix(_ON_PLACES)
+        made = parse_method(_HORIZONS.get(rest, rest))
+        return Method(made.name + _ON_PLACES, made.planner, "places")
     known = [p for p in PLANNERS if name == p or name.startswith(f"{p}-")]
     if not known:
         raise GeomsimError(f"There is no method {name!r}; {nearest(name.rstrip('0123456789-'), PLANNERS)}")
@@ -101,6 +102,9 @@ def default_methods() -> tuple[str, ...]:
 
 
 _ON_PLACES = "-places"
+
+#: planners that look far ahead on places unless told otherwise: what is searched grows slowly there with the horizon
+_HORIZONS = {"best-response": "best-response-40"}
 
 _FIGURE_5 = ("distance-over-probability", "probability", "target-probability", "entropy")
 
