@@ -73,7 +73,7 @@ def sight_among(
 def _read(path: Path, eyes: int, targets: int) -> Seen | None:
     """Return an entry; None if there is none, or none that can be right."""
     try:
-        with np.load(path, allow_pickle=False) as entry:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as entry:
             indptr, indices = entry["indptr"], entry["indices"]
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         return None
