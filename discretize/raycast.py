@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from discretize.wallgrid import WallGrid
 
-__all__ = ["compiled", "free_line", "grid_arrays", "seen_among", "seen_from", "seen_pairs"]
+__all__ = ["blocking_wall", "blocks", "compiled", "free_line", "grid_arrays", "seen_among", "seen_from", "seen_pairs"]
 
 #: pairs of an eye and a target that are looked at in one go: a megabyte or so
 _CHUNK = 1_000_000
@@ -29,12 +29,26 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @compiled
-def free_line(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
-    """Whether no wall is between a and b: squares are visited in the order in which the ray goes through them.
+def blocks(px, py, qx, qy, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    """Whether the wall from p to q is between a and b.
 
     A ray that touches the end of a wall is blocked; one that only ends on a wall, or runs along one, is not. These
     are the rules of pymunk's segment queries.
     """
+    dx, dy = bx - ax, by - ay
+    p = dx * (py - ay) - dy * (px - ax)
+    q = dx * (qy - ay) - dy * (qx - ax)
+    if p * q > 0.0:
+        return False
+    ex, ey = qx - px, qy - py
+    a = ex * (ay - py) - ey * (ax - px)
+    b = ex * (by - py) - ey * (bx - px)
+    return a * b < 0.0
+
+
+@compiled
+def blocking_wall(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    """Return a wall that is between a and b, or -1; squares are visited in the order in which the ray goes on."""
     dx, dy = bx - ax, by - ay
     i = min(max(math.floor((ax - x0) / size), 0), columns - 1)
     j = min(max(math.floor((ay - y0) / size), 0), rows - 1)
@@ -54,22 +68,21 @@ def free_line(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by
         square = j * columns + i
         for m in range(first[square], first[square + 1]):
             w = members[m]
-            px, py, qx, qy = walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3]
-            p = dx * (py - ay) - dy * (px - ax)
-            q = dx * (qy - ay) - dy * (qx - ax)
-            if p * q <= 0.0:
-                ex, ey = qx - px, qy - py
-                a = ex * (ay - py) - ey * (ax - px)
-                b = ex * (by - py) - ey * (bx - px)
-                if a * b < 0.0:
-                    return False
+            if blocks(walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], ax, ay, bx, by):
+                return w
         if j == last_j or (i != last_i and leave_x < leave_y):
             i += step_i
             leave_x += side_x
         else:
             j += step_j
             leave_y += side_y
-    return True
+    return -1
+
+
+@compiled
+def free_line(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    """Whether no wall is between a and b."""
+    return blocking_wall(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by) < 0
 
 
 @compiled

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from discretize.navmesh import NavMesh, navmesh_of
-from discretize.sharing import segment_tree
+from discretize.sharing import points_of, segment_tree
 from maps import FreeSpace
 
 __all__ = ["Reach", "reach_of"]
@@ -81,8 +81,10 @@ class Reach:
         """
         found = np.full(len(points), -1, dtype=np.intp)
         sane = np.flatnonzero(np.isfinite(points).all(axis=1))
-        which, part = self._hairs.query(shapely.points(points[sane]), predicate="intersects")
-        found[sane[which]] = part
+        which, part = self._hairs.query(shapely.points(points[sane]))
+        for k in np.unique(part).tolist():
+            near = sane[which[part == k]]
+            found[near[shapely.intersects_xy(self._hairs.geometries[k], points[near])]] = k
         return found
 
     def allows(self, ways: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -146,10 +148,11 @@ class Reach:
         if not self._joined(start, goal):
             return None
         low, high = np.minimum(start, goal) - margin, np.maximum(start, goal) + margin
-        near = ((self._corners >= low) & (self._corners <= high)).all(axis=1)
-        if near.sum() > _CORNERS:
+        near = np.sort(self._corners.query(shapely.box(*low, *high)))
+        if len(near) > _CORNERS:
             return None
-        return self._by_corners(np.concatenate([start[None], goal[None], self._corners[near]]))
+        corners = shapely.get_coordinates(self._corners.geometries[near])
+        return self._by_corners(np.concatenate([start[None], goal[None], corners]))
 
     def far_way(self, start: NDArray[np.float64], goal: NDArray[np.float64]) -> NDArray[np.float64] | None:
         """Short way for a body's centre, however far around; None where there is none.
@@ -205,8 +208,10 @@ class Reach:
 
     @cached_property
     def _hairs(self) -> shapely.STRtree:
-        """Every part with a nanometre around it."""
-        return shapely.STRtree([part.buffer(1e-9, join_style="mitre") for part in self.parts])
+        """Every part with a nanometre around it, prepared."""
+        hairs = [part.buffer(1e-9, join_style="mitre") for part in self.parts]
+        shapely.prepare(hairs)
+        return shapely.STRtree(hairs)
 
     @cached_property
     def _tiles(self) -> shapely.STRtree:
@@ -220,14 +225,14 @@ class Reach:
         return np.stack([xy[:-1][follows], xy[1:][follows]], axis=1)
 
     @cached_property
-    def _corners(self) -> NDArray[np.float64]:
-        """Corners around which a shortest way can bend, shape (k, 2)."""
+    def _corners(self) -> shapely.STRtree:
+        """Corners around which a shortest way can bend."""
         turns = []
         for ring in shapely.get_rings(shapely.orient_polygons(np.array(self.parts, dtype=object))):
             xy = shapely.get_coordinates(ring)[:-1]
             before, after = xy - np.roll(xy, 1, axis=0), np.roll(xy, -1, axis=0) - xy
             turns.append(xy[before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0])
-        return np.concatenate(turns) if turns else np.empty((0, 2))
+        return shapely.STRtree(points_of(np.concatenate([np.empty((0, 2)), *turns])))
 
 
 def reach_of(space: FreeSpace, radius: float) -> Reach:

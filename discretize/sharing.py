@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-__all__ = ["segment_tree", "shared_segments"]
+__all__ = ["points_of", "segment_tree", "shared_segments"]
 
 _CLOSE = 1e-6
 """Edges this near to each other are the same, and segments shorter than this are none, metres."""
@@ -49,6 +49,11 @@ def shared_segments(cells: Sequence[shapely.Polygon]) -> tuple[NDArray[np.intp],
     i, j, low, high = i[touch], j[touch], low[touch], high[touch]
     segments = edges[i, :1] + unit[touch][:, None] * np.stack([low, high], axis=1)[..., None]
     return _joined(np.stack([owner[i], owner[j]], axis=1), segments)
+
+
+def points_of(xy: NDArray[np.float64]) -> NDArray[np.object_]:
+    """Make a point of each row, shape (k,)."""
+    return np.asarray(shapely.points(xy), dtype=object)
 
 
 def segment_tree(segments: NDArray[np.float64]) -> shapely.STRtree:

@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from discretize import CellMap, Portal, check_cells, convex_cells
-    from geomsim.episode import Episode, Outcome, Status
+    from geomsim.communication import Communication
+    from geomsim.episode import Capture, Episode, Outcome, Status
     from geomsim.evaders import CentroidBoundary, Fleeing, Hiding, ShortestPaths, Still
     from geomsim.pursuit import Timing, run_episode
     from geomsim.scenario import Scenario, read_scenario
@@ -31,8 +32,10 @@ if TYPE_CHECKING:
     from planners import Decoupled, Random, SearchGraph, Stationary
 
 __all__ = [
+    "Capture",
     "CellMap",
     "CentroidBoundary",
+    "Communication",
     "Decoupled",
     "Episode",
     "Evader",
@@ -66,7 +69,8 @@ _HOMES = {
     "discretize": ("CellMap", "Portal", "check_cells", "convex_cells"),
     "maps": ("FloorPlan", "GeomsimError"),
     "planners": ("Decoupled", "Random", "SearchGraph", "Stationary"),
-    "geomsim.episode": ("Episode", "Outcome", "Status"),
+    "geomsim.communication": ("Communication",),
+    "geomsim.episode": ("Capture", "Episode", "Outcome", "Status"),
     "geomsim.evaders": ("CentroidBoundary", "Fleeing", "Hiding", "ShortestPaths", "Still"),
     "geomsim.pursuit": ("Timing", "run_episode"),
     "geomsim.scenario": ("Scenario", "read_scenario"),

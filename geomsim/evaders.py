@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from geomsim.walking import Route, Routes
 from maps import GeomsimError, nearest
+from planners import MotionModel, StationaryMotion
 
 __all__ = [
     "EVADERS",
@@ -33,7 +34,9 @@ class EvaderModel(Protocol):
     """Gives the routes of an evader.
 
     A model whose class has a true attribute ``reacts`` is told of the robots that it sees. Each of its trials needs a
-    world of its own, while one run of any other evader serves every team.
+    world of its own, while one run of any other evader serves every team. A model may have a method ``in_cells(speed)``
+    that returns the :class:`planners.MotionModel` which predictions of trials go by, if that is not to be
+    :class:`planners.DwellTime`.
     """
 
     def walk(self, routes: Routes, cell: int, rng: np.random.Generator, lookout: Lookout) -> Iterator[Route]:
@@ -77,6 +80,10 @@ class Still:
         """Yield stays."""
         while True:
             yield routes.stay(cell, 60.0)
+
+    def in_cells(self, speed: float) -> MotionModel:  # noqa: ARG002
+        """Return the identity."""
+        return StationaryMotion()
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -43,8 +43,10 @@ class ScenarioPrediction:
         The number that people give to the first cell: 1, or 0 in an edge list.
     unit : str
         Of the times: "s", or "steps" in an edge list.
+    capture : {"cell", "sight"}
+        What counts as capture.
     belief : {"cells", "places"}
-        What it is a prediction of: same-cell capture in the cell model, or capture by sight with a belief over places.
+        What it is computed by: the cell model, or the team's run in the world and a belief over places.
     step : float
         From one value of a survival curve to the next, in that unit.
     scenario : dict
@@ -56,6 +58,7 @@ class ScenarioPrediction:
     bounds: tuple[float, ...] | None
     first: int
     unit: str
+    capture: str
     belief: str
     step: float
     scenario: dict[str, Any]
@@ -81,9 +84,13 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
         If the scenario cannot be read or predicted.
     """
     scenario = read_scenario(path, keys)
-    if scenario.capture == "sight" and "capture" in scenario.model_fields_set:
+    asked = scenario.capture if "capture" in scenario.model_fields_set else "cell"
+    capture = "sight" if "sight" in (asked, scenario.belief_capture) else "cell"
+    if asked == "sight" and not is_edge_list(scenario.plan):
         return _by_sight(scenario, everywhere=everywhere)
     if is_edge_list(scenario.plan):
+        if capture == "sight":
+            raise GeomsimError(f"{scenario.plan} is an edge list, without walls: capture by sight needs a floor plan.")
         graph = read_edge_list(scenario.plan)
         if scenario.planner == "random":  # in unit time a wandering pursuer chooses as the evader does
             scenario = scenario.model_copy(update={"options": {"wait": True} | scenario.options})
@@ -91,7 +98,7 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
         starts = _common(graph, scenario.pursuers) if everywhere else [_vertices(scenario, graph)]
     else:
         plan, cells = scenario.place()
-        team = scenario.team()
+        team = replace(scenario.team(), believes=capture)
         _, problem = believed_problem(cells, team, scenario.belief_motion(), scenario.belief_step)
         first, name = 1, plan.name
         graph = problem.graph
@@ -104,24 +111,29 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
     except TooLargeError:
         bounds = None
     unit = "steps" if first == 0 else "s"
+    # of a plan's checkpoints only cells have numbers that people know
+    numbered = len(graph) if first == 0 else len(cells)
+    predictions = tuple(
+        replace(p, paths=tuple(tuple(stop for stop in path if stop < numbered) for path in p.paths))
+        for p in predictions
+    )
     step = 1.0 if first == 0 else scenario.belief_step
-    told = scenario.as_dict() | {"capture": "cell"}
-    return ScenarioPrediction(name, predictions, bounds, first, unit, "cells", step, told)
+    return ScenarioPrediction(name, predictions, bounds, first, unit, capture, "cells", step, scenario.as_dict())
 
 
 def _by_sight(scenario: Scenario, *, everywhere: bool) -> ScenarioPrediction:
     from geomsim.sightprediction import predict_sight
 
-    if is_edge_list(scenario.plan):
-        raise GeomsimError(f"{scenario.plan} is a graph without walls, in which there is no capture by sight.")
     plan, cells = scenario.place()
     team, timing, motion = scenario.team(), scenario.timing(), scenario.belief_motion()
-    graph = SearchGraph.from_cells(cells)
-    starts = _common(graph, scenario.pursuers) if everywhere else [place_team(cells, team)]
-    speed = scenario.motion_speed or scenario.evader_speed
-    predictions = tuple(predict_sight(cells, team, start, motion, speed, timing, scenario.seed) for start in starts)
+    starts = _common(SearchGraph.from_cells(cells), scenario.pursuers) if everywhere else [place_team(cells, team)]
+    predictions = tuple(
+        predict_sight(cells, team, start, scenario.quarry(), motion, timing, scenario.seed) for start in starts
+    )
+    _, problem = believed_problem(cells, replace(team, believes="places"), motion, timing.belief_step)
+    bounds = lower_bounds(problem, starts, reachable=True)
     step = timing.physics_step * looks_every(timing.physics_step)
-    return ScenarioPrediction(plan.name, predictions, None, 1, "s", "places", step, scenario.as_dict())
+    return ScenarioPrediction(plan.name, predictions, bounds, 1, "s", "sight", "places", step, scenario.as_dict())
 
 
 def is_edge_list(plan: str) -> bool:

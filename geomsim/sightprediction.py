@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from discretize import CellMap
+from geomsim.curves import lengthened, mean_time
 from geomsim.pursuit import Timing
 from geomsim.seeds import Streams, trial_seeds
-from geomsim.team import Team
+from geomsim.team import Evader, Team
 from geomsim.teamwork import Teamwork
-from geomsim.watching import Watch, expected_looks
+from geomsim.watching import Watch
 from planners import Decision, MotionModel, Planner, Policy, Prediction, SearchProblem, SearchState
 
 __all__ = ["predict_sight"]
@@ -28,8 +29,8 @@ def predict_sight(
     cells: CellMap,
     team: Team,
     starts: Sequence[int],
+    evader: Evader,
     motion: MotionModel,
-    speed: float,
     timing: Timing,
     seed: int,
 ) -> Prediction:
@@ -47,11 +48,10 @@ def predict_sight(
         Who searches.
     starts : sequence of int
         The cell in which each pursuer starts, counted from 0.
+    evader : Evader
+        Who is searched for, see :class:`geomsim.watching.Watch`; of several the last one counts.
     motion : MotionModel
-        What the team believes of the evader's motion. The evader of the prediction stands still if that is
-        ``StationaryMotion``, and else moves as the paper's does.
-    speed : float
-        Of the evader, metres a second.
+        What the team believes of its motion.
     timing : Timing
         Clocks; the prediction ends at their limit.
     seed : int
@@ -62,14 +62,15 @@ def predict_sight(
     Prediction
         Its curve has a value for each look, at ``LOOK_STEP`` from each other.
     """
-    watch = Watch(cells, motion, speed, timing.physics_step)
+    watch = Watch(cells, evader, timing.physics_step)
     seeds = trial_seeds(seed, _RUNS)
     runs = [_Run(watch, cells, team, starts, motion, timing, seeds[0])]
     if runs[0].drew:
         runs += [_Run(watch, cells, team, starts, motion, timing, one) for one in seeds[1:]]
-    length = max(len(run.curve) for run in runs)
-    free = np.mean([np.pad(run.curve, (0, length - len(run.curve)), mode="edge") for run in runs], axis=0)
-    mean = float(np.mean([expected_looks(run.curve, timing.limit / watch.step) for run in runs])) * watch.step
+    curves = [1.0 - (1.0 - run.curve) ** evader.count for run in runs]
+    length = max(map(len, curves))
+    free = np.mean([lengthened(curve, length) for curve in curves], axis=0)
+    mean = float(np.mean([mean_time(curve, watch.step, timing.limit) for curve in curves]))
     paths = runs[0].paths if len(runs) == 1 else ((),) * team.pursuers
     return Prediction(tuple(starts), mean, free, paths, float(np.mean([run.seconds_per_plan for run in runs])))
 

@@ -178,7 +178,7 @@ class Walkers:
         self._marks = np.full((k, 3), np.inf)
         # the piece of the polyline that the aim is on: its number, first point, way to that, slopes, way to its end
         self._piece = np.zeros(k, dtype=np.intp)
-        self._corner, self._slope = np.zeros((k, 2)), np.zeros((k, 2))
+        self._corner, self._slope = np.zeros((2, k)).T, np.zeros((2, k)).T
         self._from, self._until = np.zeros(k), np.zeros(k)
         for i, route in enumerate(starts):
             self._follow(i, route)
@@ -232,14 +232,11 @@ class Walkers:
         over = self.aim >= self._until
         if over.any():
             self._turn(np.flatnonzero(over))
-        aims = self._corner + (self.aim - self._from)[:, np.newaxis] * self._slope
+        aims = (self._corner.T + (self.aim - self._from) * self._slope.T).T
         self._now, self._next = self._next, aims
         self.cells, self._next_cells = self._next_cells, self.aimed_cells
         wanted: NDArray[np.float64] = (aims - self._coasting) / dt
-        fast = _squares(wanted)
-        over = fast > self._squares
-        if over.any():
-            wanted[over] *= np.sqrt(self._squares[over] / fast[over])[:, np.newaxis]
+        wanted.T[...] *= np.sqrt(self._squares / np.maximum(_squares(wanted), self._squares))
         return wanted
 
     def keep(self, which: NDArray[np.intp]) -> None:
@@ -260,7 +257,7 @@ class Walkers:
         ):
             setattr(self, name, getattr(self, name)[which])
         for name in ("_piece", "_corner", "_slope", "_from", "_until", "_now", "_next", "_coasting"):
-            setattr(self, name, getattr(self, name)[which])
+            setattr(self, name, np.asfortranarray(getattr(self, name)[which]))
         for name in ("_points", "_slopes", "_marks"):
             setattr(self, name, getattr(self, name)[which])
 

@@ -11,14 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from discretize import CellMap, WallGrid
+from geomsim.believing import strolling
+from geomsim.evaders import Still
 from geomsim.sensing import Sensor
-from planners import MotionModel, Roads, StationaryMotion, uniform_belief
-from planners.places import Places, StandingStill, Strolling
+from geomsim.team import Evader
+from planners import DwellTime, StationaryMotion, uniform_belief
 
 if TYPE_CHECKING:
     from planners.motion import Sparse
 
-__all__ = ["LOOK_STEP", "Lookout", "Track", "Watch", "expected_looks", "looks_every"]
+__all__ = ["LOOK_STEP", "Lookout", "Track", "Watch", "looks_every"]
 
 #: between two looks, seconds, as near as physics steps allow: what shows for a shorter time may be missed. Measured on
 #: the bundled plans, half a second is too long in the small house only.
@@ -55,10 +57,8 @@ class Watch:
     ----------
     cells : CellMap
         Where.
-    motion : MotionModel
-        ``StationaryMotion`` for an evader that stands still; any other moves as the paper's evader does.
-    speed : float
-        Of the evader, metres a second.
+    evader : Evader
+        Who is looked for. Who stands still does so; any other is taken to stroll like the paper's evader.
     physics_step : float
         Seconds.
 
@@ -72,12 +72,12 @@ class Watch:
         Time of the first look, and from one to the next, seconds.
     """
 
-    def __init__(self, cells: CellMap, motion: MotionModel, speed: float, physics_step: float) -> None:
+    def __init__(self, cells: CellMap, evader: Evader, physics_step: float) -> None:
         self.every = looks_every(physics_step)
         self.begin, self.step = physics_step, self.every * physics_step
-        self.places = Places.of(Roads.of(cells), speed * self.step)
-        still = isinstance(motion, StationaryMotion)
-        moves = StandingStill(self.places) if still else Strolling(self.places, speed)
+        believed = StationaryMotion() if isinstance(evader.model, Still) else DwellTime(evader.speed)
+        moves = strolling(cells, believed, self.step)
+        self.places = moves.places
         inner: Sparse = moves.matrix(self.places.roads.graph, self.step)[1:, 1:]
         self.transposed = inner.T.tocsr()
         self._grid = WallGrid.of(cells.plan.walls)
@@ -154,16 +154,6 @@ class Lookout:
                 self._known[i] = key, self._watch.missed(sensor, eyes[i], float(headings[i]))
             self.free = self.free * self._known[i][1]
         return float(self.free.sum())
-
-
-def expected_looks(free: NDArray[np.float64], limit: float) -> float:
-    """Return the expected number of looks up to a limit; after its end a curve falls on as in its last half."""
-    if len(free) >= limit or free[-1] <= 0:
-        return float(free[: math.ceil(limit)].sum())
-    half, rest = len(free) // 2, limit - len(free)
-    rate = math.log(free[half] / free[-1]) / max(1, len(free) - 1 - half)
-    more = rest if rate <= 0 else -math.expm1(-rate * rest) / math.expm1(rate)
-    return float(free.sum() + free[-1] * more)
 
 
 def looks_every(physics_step: float) -> int:

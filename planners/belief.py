@@ -84,6 +84,19 @@ def advance(
     -------
     ndarray, shape (..., N + 1)
         A new array; the one given is not changed.
+
+    Examples
+    --------
+    Three cells in a row, a pursuer in the first one, and an evader that stays or goes to a neighbour, all alike. From
+    the middle one a third comes into the first, and is captured there:
+
+    >>> import numpy as np
+    >>> from planners import SameCell, SearchGraph, UniformMotion, advance, uniform_belief
+    >>> row = SearchGraph.from_edges(3, [(0, 1), (1, 2)])
+    >>> belief = uniform_belief(row, exclude=[0])
+    >>> after = advance(belief, UniformMotion().matrix(row, 1.0), [SameCell().row(row, 0)])
+    >>> print(6 * after)  # in sixths: captured, and in each cell
+    [1.  0.  2.5 2.5]
     """
     states = belief.shape[-1]
     after: NDArray[np.float64] = np.asarray(belief.reshape(-1, states) @ transition).reshape(belief.shape)

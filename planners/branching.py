@@ -5,17 +5,26 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planners.simulation import SearchModel
+from planners.simulation import Moves, SearchModel
+
+if TYPE_CHECKING:
+    from planners.motion import Sparse
 
 __all__ = ["Certificate", "JointSearch"]
 
-# Nodes between two looks at the clock: a millisecond or two.
-BATCH = 100
+# Nodes of the joint search between two looks at the clock.
+BATCH = 10
+
+# Nodes of the first search for one pursuer's path.
+FIRST_BUDGET = 10_000
+
+# Links between looks that are worth their memory.
+MOST_LINKS = 5_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,10 +61,10 @@ class JointSearch:
     """Searches all joint plans of a team over ``horizon`` steps.
 
     The value of a plan is ``sum_t discount^t p0(t)``, t = 1 ... horizon, with p0 the capture state's probability: as
-    much as to minimise the time not captured over the horizon. The pursuers' paths are fixed one after another; what
-    a path adds to those before it is linear in the mass that its looks take (see :mod:`planners.kernels`), and what a
-    pursuer not yet fixed can add is bounded by a relaxation in which its looks hardly take anything from each other
-    (after the MEAN bound for the optimal searcher path problem), so that the last pursuer is answered exactly.
+    much as to minimise the time not captured over the horizon. The pursuers' paths are fixed one after another, the
+    last pursuer is answered exactly, and what those not yet fixed can add is bounded by priced looks, see
+    :mod:`planners.pricing`; in one pursuer's own search by a relaxation in which its looks hardly take anything from
+    each other (after the MEAN bound for the optimal searcher path problem), see :mod:`planners.kernels`.
 
     Parameters
     ----------
@@ -68,22 +77,17 @@ class JointSearch:
     """
 
     def __init__(self, model: SearchModel, *, horizon: int, discount: float) -> None:
+        from planners.kernels import Look, Motion
+
         self.model, self.horizon = model, horizon
         weight = discount ** np.arange(1, horizon + 1)
         self.weight = np.concatenate([[0.0], np.cumsum(weight[::-1])[::-1]])
         self.weight[0] = self.weight[1]
-        matrix, table = model.dispersion, model.looks.table
-        self.motion = (matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data)
-        self.looks = (
-            table.indptr.astype(np.int64), table.indices.astype(np.int64), table.data, table.toarray()
-        )  # fmt: skip
-        self.kind, kinds = np.array(model.kind), model.kinds
-        longest = max(moves.views.shape[1] for moves in kinds)
-        views = [np.pad(moves.views, ((0, 0), (0, longest - moves.views.shape[1])), mode="edge") for moves in kinds]
-        steps = [moves.steps for moves in kinds]
-        self.moves = tuple(
-            np.ascontiguousarray(a, dtype=np.int64) for a in (kinds[0].start, kinds[0].target, steps, views)
-        )
+        self.motion = Motion(*_rows(model.dispersion))
+        self.looks = Look(*_rows(model.looks.table))
+        self.kind = np.array(model.kind)
+        self.ways = _ways(model.kinds, self.motion, self.looks)
+        self._stack = self._new_stack()
 
     def value(
         self,
@@ -135,30 +139,57 @@ class JointSearch:
         seconds : float
             The search ends after this time.
         """
-        from planners.kernels import begin_search, open_bound, search
-
         begun = time.perf_counter()
         who = [i for i in (range(len(moves)) if who is None else who) if self._free_at(i, moves, done) < self.horizon]
         fixed = self._certain(moves, done, self.fill(moves, plans), who, absent)
+        known = 0.0 if absent else self.value(belief, moves, done, plans)
+        found = [tuple(int(m) for m in plan) for plan in plans]
+        first = np.array([(self._free_at(i, moves, done), self.model.moves[i].target[moves[i]]) for i in who], np.int64)
         if not who:
             value = self._worth_of(belief, fixed)
-            return Certificate(value, value, tuple(tuple(plan) for plan in plans), 0, time.perf_counter() - begun)
-        best = known = 0.0 if absent else self.value(belief, moves, done, plans)
-        task, state, tables = self._prepare(belief, moves, done, who, fixed)
-        answer = np.full(len(state[0]), -1)
-        level, opened = begin_search(self._worth_of(belief, fixed), task, state, tables), 0
-        while level >= 0 and opened < nodes and time.perf_counter() - begun < seconds:
-            level, best, more = search(level, best, min(BATCH, nodes - opened), task, state, tables, answer)
-            opened += more
-        bound = float(open_bound(level, best, task, state))
-        found = [tuple(int(m) for m in plan) for plan in plans]
-        if best > known:
-            k = 0
-            for i, rest in zip(who, task[5][:, 0], strict=True):
-                length = self._length(i, answer[k:], int(rest))
-                found[i] = tuple(int(m) for m in answer[k : k + length])
-                k += length
-        return Certificate(float(best), bound, tuple(found), opened, time.perf_counter() - begun)
+            return Certificate(value, value, tuple(found), 0, time.perf_counter() - begun)
+        if len(who) == 1:
+            value, bound, opened, rows = self._one(belief, who[0], first[0], fixed, known, nodes, begun + seconds)
+        else:
+            value, bound, opened, rows = self._joint(belief, who, first, fixed, known, nodes, begun + seconds)
+        if rows[0, 0] >= 0:
+            for i, (free, _), row in zip(who, first, rows, strict=True):
+                found[i] = tuple(int(m) for m in row[: self._length(i, row, int(free))])
+        return Certificate(value, bound, tuple(found), opened, time.perf_counter() - begun)
+
+    def _one(
+        self,
+        belief: NDArray[np.float64],
+        pursuer: int,
+        first: NDArray[np.intp],
+        fixed: NDArray[np.float64],
+        known: float,
+        nodes: int,
+        until: float,
+    ) -> tuple[float, float, int, NDArray[np.int64]]:
+        """Return value, bound, nodes and moves of one pursuer's best path; searched anew with twice as many nodes."""
+        from planners.kernels import best_path, new_path, values_from, weigh
+
+        worth, seen, path = (
+            np.empty((self.horizon + 1, self.model.states)),
+            np.empty_like(fixed),
+            new_path(self.horizon),
+        )
+        values_from(self.weight, fixed, self.motion, worth)
+        base = weigh(belief, self.weight, fixed, self.motion, seen)
+        free, opened, budget = belief[np.newaxis], 0, min(nodes, FIRST_BUDGET)
+        begin, cell = int(first[0]), int(first[1])
+        for t in range(begin):
+            free = self.model.disperse(free) * fixed[t]
+        best, ways = known - base, self._kind_of(pursuer)
+        while True:
+            self._stack.free[0, begin] = free[0]
+            best, bound, more = best_path(
+                begin, cell, fixed, worth, self.motion, self.looks, ways, self._stack, path, best, 0.0, budget
+            )
+            opened, budget = opened + more, 2 * budget
+            if bound <= best or opened >= nodes or time.perf_counter() >= until:
+                return base + best, base + bound, opened, path.moves[np.newaxis]
 
     def _free_at(self, pursuer: int, moves: Sequence[int], done: Sequence[int]) -> int:
         """Return after how many steps a pursuer is at a checkpoint."""
@@ -196,39 +227,119 @@ class JointSearch:
             free = free * unseen[t]
         return total
 
-    def _prepare(
+    def _joint(
         self,
         belief: NDArray[np.float64],
-        moves: Sequence[int],
-        done: Sequence[int],
         who: Sequence[int],
+        first: NDArray[np.int64],
         fixed: NDArray[np.float64],
-    ) -> tuple[Any, Any, Any]:
-        """Return the arrays that the compiled search works on: what to solve, its nodes, and its tables."""
-        model, horizon, team = self.model, self.horizon, len(who)
-        first = np.zeros((team, 2), dtype=np.int64)
-        for k, i in enumerate(who):
-            first[k] = self._free_at(i, moves, done), model.moves[i].target[moves[i]]
+        known: float,
+        nodes: int,
+        until: float,
+    ) -> tuple[float, float, int, NDArray[np.int64]]:
+        """Return value, bound, nodes and moves of the best joint plan of several pursuers."""
+        from planners.pricing import AT_FIRST, Task, search
+
         kind = self.kind[list(who)]
-        twins = team == 2 and bool(kind[0] == kind[1] and (first[0] == first[1]).all())
-        # A level for each step of each pursuer, and a spare one.
-        levels, widest = team * (horizon + 1) + 2, int(np.diff(model.graph.indptr).max()) + 1
-        task = (belief, self.motion, self.looks, self.moves, kind, first, twins, self.weight)
-        state = (
-            *np.zeros((3, levels), dtype=np.int64),
-            np.zeros(levels),
-            np.zeros((levels, widest)),
-            np.zeros((levels, widest), dtype=np.bool_),
-            np.zeros(levels, dtype=np.int64),
+        alike = bool((kind == kind[0]).all() and (first == first[0]).all())
+        task = Task(belief, self.weight, self.motion, self.looks, self.ways, kind, first, alike)
+        state, room = self._make_room(len(who))
+        room.certain[0] = fixed
+        level, best, opened = AT_FIRST, known, 0
+        while level != -1 and opened < nodes and time.perf_counter() < until:
+            level, best, more = search(level, best, min(BATCH, nodes - opened), task, state, room)
+            opened += more
+        bound = max(best, room.summary[2])
+        for k in range(level + 1):
+            open_moves = ~state.used[k, : len(self.model.graph.neighbours(state.where[k])) + 1]
+            bound = max(bound, state.bounds[k, : len(open_moves)].max(where=open_moves, initial=0.0))
+        return float(best), float(bound), opened, room.plan
+
+    def _kind_of(self, pursuer: int) -> Any:
+        """Return the moves of one pursuer for the compiled search."""
+        start, target, steps, views, ptr, *links = self.ways
+        kind = self.kind[pursuer]
+        return type(self.ways)(start, target, steps[kind], views[kind], ptr[kind], *links)
+
+    def _new_stack(self) -> Any:
+        from planners.kernels import new_stack
+
+        widest = int(np.diff(self.model.graph.indptr).max(initial=0)) + 1
+        views = self.model.looks.table.shape[0]
+        return new_stack(self.horizon, self.model.states, views, len(self.model.graph), widest)
+
+    def _make_room(self, team: int) -> tuple[Any, Any]:
+        """Return the nodes and the room of a joint search; made once for each number of pursuers."""
+        from planners.pricing import Nodes, Room
+
+        horizon, states, widest = self.horizon, self.model.states, self._stack.bounds.shape[1]
+        # A level for each step of each pursuer but the last, and a spare one.
+        levels, steps = (team - 1) * horizon + 1, (horizon, states)
+        whole = np.int64
+        nodes = Nodes(
+            owner=np.zeros(levels, whole),
+            when=np.zeros(levels, whole),
+            where=np.zeros(levels, whole),
+            value=np.zeros(levels),
+            bounds=np.zeros((levels, widest)),
+            used=np.zeros((levels, widest), dtype=np.bool_),
+            move=np.zeros(levels, whole),
+            later=np.zeros(levels),
+            free=np.zeros((levels, horizon + 1, states)),
+            frame=np.zeros(levels, whole),
+            price=np.zeros((levels, *steps)),
+            kept=np.ones((levels, *steps)),
+            worth=np.zeros((levels, horizon + 1, states)),
+            root=np.zeros((levels, horizon + 1, states)),
+            gain=np.zeros(levels),
+            gaze=np.zeros((team, horizon), whole),
         )
-        unseen = np.ones((team + 1, horizon, model.states))
-        unseen[0] = fixed
-        tables = (
-            np.zeros((levels, horizon + 1, model.states)),
-            unseen,
-            np.zeros((team + 1, horizon + 1, model.states)),
-            np.zeros((team, horizon), dtype=np.int64),
-            np.zeros((horizon + 1, len(model.graph))),
-            np.zeros((horizon + 1, len(model.graph)), dtype=np.bool_),
+        room = Room(
+            certain=np.ones((team + 1, *steps)),
+            left=np.zeros(steps),
+            worth=np.zeros((horizon + 1, states)),
+            spare=np.zeros(steps),
+            value=np.zeros((horizon + 1, states)),
+            seen=np.zeros(steps),
+            slope=np.zeros(steps),
+            kept=np.zeros(steps),
+            cheapest=np.zeros(steps),
+            stack=self._stack,
+            ahead=np.zeros_like(self._stack.ahead),
+            moves=np.full((team, horizon), -1),
+            gaze=np.full((team, horizon), -1),
+            place=np.full((team, horizon + 1), -1),
+            plan=np.full((team, horizon), -1),
+            summary=np.zeros(3),
         )
-        return task, state, tables
+        return nodes, room
+
+
+def _rows(matrix: Sparse) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    return matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
+
+
+def _ways(kinds: Sequence[Moves], motion: Any, looks: Any) -> Any:
+    """Return the moves of all kinds of pursuers, with one more axis than those of one kind."""
+    from planners.kernels import Ways, link_looks
+
+    longest = max(moves.views.shape[1] for moves in kinds)
+    start, target = kinds[0].start.astype(np.int64), kinds[0].target.astype(np.int64)
+    steps = np.stack([moves.steps for moves in kinds]).astype(np.int64)
+    views = np.stack([np.pad(m.views, ((0, 0), (0, longest - m.views.shape[1])), mode="edge") for m in kinds])
+    views = views.astype(np.int64)
+    ptr = np.zeros((*views.shape[:2], longest + 1), dtype=np.int64)
+    links = (np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0))
+    for fill in (False, True):
+        count = 0
+        for own_steps, own_views, own in zip(steps, views, ptr, strict=True):
+            own[0, 0] = count
+            link_looks(start, own_steps, own_views, motion, looks, own, fill, *links)
+            count = int(own[-1, -1])
+        if not fill:
+            # Links tighten a bound that holds without them.
+            if count > MOST_LINKS:
+                ptr[:] = 0
+                break
+            links = (np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64), np.zeros(count))
+    return Ways(start, target, steps, views, ptr, *links)

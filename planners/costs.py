@@ -60,28 +60,36 @@ Cost: TypeAlias = Callable[[Hops], NDArray[np.float64]]
 
 
 def probability(hops: Hops) -> NDArray[np.float64]:
-    """Probability of failing to capture on entering the cell: Eq. 4, ``1 - p_x(t)``."""
+    """Probability of failing to capture on entering the cell: Eq. 4 of the paper, ``1 - p_x(t)``."""
     return np.asarray(1.0 - hops.chance)
 
 
 def distance_over_probability(hops: Hops) -> NDArray[np.float64]:
-    """Distance over the probability of capture: Eq. 5, after Sarmiento et al. [16]; metres.
+    """Distance over the probability of capture: Eq. 5 of the paper, after Sarmiento et al.; metres.
 
-    A probability below 1e-9 counts as 1e-9, so that a path over fewer empty cells is still the cheaper one.
+    That is the paper's reference [16], on searching polygonal environments with several robots. A probability below
+    1e-9 counts as 1e-9, so that a path over fewer empty cells is still the cheaper one.
     """
     return np.asarray(hops.distance / np.maximum(hops.chance, SMALLEST_PROBABILITY))
 
 
 def target_probability(hops: Hops) -> NDArray[np.float64]:
-    """Distance of the belief from certain capture: Eq. 6, ``sum_n |p_n - target_n|`` with target [1, 0, ..., 0].
+    """Distance of the belief from certain capture: Eq. 6 of the paper, ``sum_n |p_n - target_n|``.
 
-    Since p sums to 1 this is twice the probability of the evader's being free.
+    The target is [1, 0, ..., 0]. Since p sums to 1 this is twice the probability of the evader's being free.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> hop = Hops(np.array([[0.5, 0.5]]), np.array([[0.0, 0.25]]), np.array([0.5]), np.array([3.0]))
+    >>> print(target_probability(hop), probability(hop), distance_over_probability(hop), entropy(hop).round(4))
+    [0.5] [0.5] [6.] [0.5623]
     """
     return np.asarray(2.0 * hops.after.sum(axis=1))
 
 
 def entropy(hops: Hops) -> NDArray[np.float64]:
-    """Entropy of the belief: Eq. 7, ``-sum_n p_n log p_n`` over all states, that of capture among them; nats."""
+    """Entropy of the belief: Eq. 7 of the paper, ``-sum_n p_n log p_n`` over all states and that of capture; nats."""
     captured = np.maximum(1.0 - hops.after.sum(axis=1), 0.0)
     return np.asarray(_surprise(hops.after).sum(axis=1) + _surprise(captured))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,10 +14,16 @@ from planners.graph import GraphError
 from planners.policy import Planner, Policy, SearchProblem
 from planners.running import run_policy
 from planners.simulation import SearchModel
-from planners.walks import JointChain
+from planners.walks import JointChain, TooLargeError, catch_chances
 
 # The curve of a team that has no plan is followed for this many times the expected time to capture.
 CURVE_LENGTH = 4.0
+
+# The exact bound is found where there are not more joint positions and states than this: within a second or so.
+LARGEST_BOUND = 1_000_000
+
+# The other bound is added up over at most so many steps, or until so little is left; what is left out would raise it.
+LONGEST_BOUND, NOTHING_LEFT = 2_000, 1e-6
 
 __all__ = ["Prediction", "lower_bounds", "predict"]
 
@@ -96,6 +103,23 @@ def predict(
         reach where the evader may be.
     TooLargeError
         If the chain of a wandering team is too large.
+
+    Examples
+    --------
+    Two rooms and an evader that stays or goes over with probability 1/2: whatever the pursuer does, it captures with
+    1/2 in each step, and needs two steps on average:
+
+    >>> import numpy as np
+    >>> from planners import Decoupled, SearchGraph, lower_bounds, predict, unit_problem
+    >>> problem = unit_problem(SearchGraph.from_edges(2, [(0, 1)]), 1)
+    >>> (result,) = predict(problem, Decoupled(), [(0,)], np.random.default_rng(0))
+    >>> print(round(result.expected_time, 6), result.survival[:4])
+    2.0 [1.    0.5   0.25  0.125]
+
+    One that knew where the evader goes would need one step:
+
+    >>> lower_bounds(problem, [(0,)])
+    (1.0,)
     """
     beliefs = []
     for start in starts:
@@ -124,23 +148,43 @@ def lower_bounds(
 ) -> tuple[float, ...]:
     """Return for each start an expected time that no planner can beat, seconds; arguments as for :func:`predict`.
 
-    It is what a team would need that always knew the evader's state; see :meth:`JointChain.informed_times`.
+    It is what a team would need that always knew the evader's state; see :meth:`JointChain.informed_times`. Where
+    there are too many joint positions for that, the union bound takes its place: that a team captures within a time is
+    at most as probable as that each of its pursuers alone does, added up; each of them can do its best for every time
+    (:func:`planners.walks.catch_chances`).
 
     Raises
     ------
     TooLargeError
-        If there are too many joint positions.
+        If there are too many positions even of a single pursuer.
     """
-    chain = JointChain(problem, wait=True)
-    times = chain.informed_times()
     first = [_first_belief(problem, start, reachable=reachable) if belief is None else belief for start in starts]
+    try:
+        times = JointChain.of(problem, wait=True, largest=LARGEST_BOUND).informed_times()
+    except TooLargeError:
+        return _union_bounds(problem, starts, first)
     return tuple(float(b[1:] @ times[tuple(start)]) for start, b in zip(starts, first, strict=True))
+
+
+def _union_bounds(
+    problem: SearchProblem, starts: Sequence[Sequence[int]], beliefs: Sequence[NDArray[np.float64]]
+) -> tuple[float, ...]:
+    bounds = np.zeros(len(starts))
+    for chances in itertools.islice(catch_chances(problem), LONGEST_BOUND):
+        left = [
+            b[1:] @ (1.0 - np.minimum(1.0, sum(c[cell] for c, cell in zip(chances, start, strict=True))))
+            for start, b in zip(starts, beliefs, strict=True)
+        ]
+        bounds += left
+        if max(left) < NOTHING_LEFT:
+            break
+    return tuple((bounds * problem.time_step).tolist())
 
 
 def _wander(
     problem: SearchProblem, planner: Random, teams: Sequence[tuple[int, ...]], beliefs: Sequence[NDArray[np.float64]]
 ) -> tuple[Prediction, ...]:
-    chain = JointChain(problem, wait=planner.wait)
+    chain = JointChain.of(problem, wait=planner.wait)
     times = chain.wandering_times()
     expected = [float(belief[1:] @ times[team]) for team, belief in zip(teams, beliefs, strict=True)]
     steps = int(np.ceil(CURVE_LENGTH * max(expected) / problem.time_step))

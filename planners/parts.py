@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["MotionInParts", "cut_cells"]
 
+# However small a cell, its lattice has so many points in each direction.
+FEWEST = 2
+
 
 def cut_cells(cells: CellMap, spacing: float) -> tuple[StateSpace, NDArray[np.float64]]:
     """Cut every cell into equal parts, one around each point of a square lattice that lies in it.
@@ -46,7 +49,7 @@ def cut_cells(cells: CellMap, spacing: float) -> tuple[StateSpace, NDArray[np.fl
 def _lattice(cell: shapely.Polygon, spacing: float) -> NDArray[np.float64]:
     """Return the points of a lattice in the middle of a cell's bounds that lie in the cell; at least one point."""
     x0, y0, x1, y1 = cell.bounds
-    across, up = (max(1, round((b - a) / spacing)) for a, b in ((x0, x1), (y0, y1)))
+    across, up = (max(FEWEST, round((b - a) / spacing)) for a, b in ((x0, x1), (y0, y1)))
     x = x0 + (np.arange(across) + 0.5) * (x1 - x0) / across
     y = y0 + (np.arange(up) + 0.5) * (y1 - y0) / up
     points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from maps import GeomsimError
 from planners.policy import SearchProblem
-from planners.simulation import Moves, SearchModel
+from planners.simulation import Looks, Moves, SearchModel
 
 if TYPE_CHECKING:
     from planners.motion import Sparse
 
-__all__ = ["JointChain", "TooLargeError"]
+__all__ = ["JointChain", "TooLargeError", "catch_chances"]
 
 # Numbers in one array over joint positions and states: 160 MB.
 LARGEST = 20_000_000
@@ -34,16 +34,16 @@ class Walk:
     ----------
     first, last : ndarray of intp, shape (K,)
         Every step from one position to another that is possible.
-    views : ndarray of intp, shape (S,)
-        Viewpoint of each position.
+    kept : ndarray, shape (S, N)
+        Share of each state that stays unseen from each position.
     """
 
     first: NDArray[np.intp]
     last: NDArray[np.intp]
-    views: NDArray[np.intp]
+    kept: NDArray[np.float64]
 
     @classmethod
-    def of(cls, moves: Moves, *, wait: bool) -> Walk:
+    def of(cls, moves: Moves, looks: Looks, *, wait: bool) -> Walk:
         """List the positions and steps of a pursuer that may wait at checkpoints, or may not."""
         cells = len(moves.start) - 1
         first, last, views = [], [], moves.views[moves.start[:-1], 0].tolist()
@@ -54,14 +54,14 @@ class Walk:
                 views += moves.views[move, : len(chain) - 2].tolist()
                 first += chain[:-1]
                 last += chain[1:]
-        return cls(np.array(first), np.array(last), np.array(views))
+        return cls(np.array(first), np.array(last), looks.kept(np.array(views)))
 
     def uniform(self) -> Sparse:
         """Return the matrix of a walk that takes every possible step with the same probability, shape (S, S)."""
         from scipy.sparse import csr_array
 
-        count = np.bincount(self.first, minlength=len(self.views))
-        return csr_array((1.0 / count[self.first], (self.first, self.last)), shape=(len(self.views),) * 2)
+        count = np.bincount(self.first, minlength=len(self.kept))
+        return csr_array((1.0 / count[self.first], (self.first, self.last)), shape=(len(self.kept),) * 2)
 
 
 class JointChain:
@@ -72,32 +72,33 @@ class JointChain:
 
     Parameters
     ----------
-    problem : SearchProblem
+    model : SearchModel
         The problem.
-    wait : bool
-        Whether pursuers may wait at checkpoints.
-
-    Raises
-    ------
-    TooLargeError
-        If there are more than 20 million joint positions and states.
+    walks : sequence of Walk
+        The positions of each pursuer.
     """
 
-    def __init__(self, problem: SearchProblem, *, wait: bool) -> None:
-        model = SearchModel(problem)
-        self.walks = tuple(Walk.of(moves, wait=wait) for moves in model.moves)
-        self.shape = (*(len(walk.views) for walk in self.walks), model.states)
-        size = float(np.prod(np.array(self.shape, dtype=np.float64)))
-        if size > LARGEST:
-            raise TooLargeError(
-                f"The team and the evader have {size:.3g} joint positions; an exact result allows {LARGEST:.3g}."
-            )
-        self.step = problem.time_step
+    def __init__(self, model: SearchModel, walks: Sequence[Walk]) -> None:
+        self.walks = tuple(walks)
+        self.shape = (*(len(walk.kept) for walk in walks), model.states)
+        self.step = model.step
         self.dispersion = model.dispersion
         self.unseen = np.ones(self.shape)
         for axis, walk in enumerate(self.walks):
-            kept = model.looks.kept(walk.views)
-            self.unseen *= np.expand_dims(kept, tuple(k for k in range(len(self.walks)) if k != axis))
+            self.unseen *= np.expand_dims(walk.kept, tuple(k for k in range(len(walks)) if k != axis))
+
+    @classmethod
+    def of(cls, problem: SearchProblem, *, wait: bool, largest: int = LARGEST) -> JointChain:
+        """Make the chain of a problem; pursuers may wait at checkpoints, or may not.
+
+        Raises
+        ------
+        TooLargeError
+            If there are more than so many joint positions and states.
+        """
+        model = SearchModel(problem)
+        _check_size(model.moves, model.states, largest)
+        return cls(model, [Walk.of(moves, model.looks, wait=wait) for moves in model.moves])
 
     def wandering_times(self) -> NDArray[np.float64]:
         """Return the expected time to capture from everywhere, for pursuers that wander; seconds, ``self.shape``.
@@ -180,6 +181,46 @@ class JointChain:
         return times
 
 
+def catch_chances(problem: SearchProblem) -> Iterator[tuple[NDArray[np.float64], ...]]:
+    """Yield, for 0, 1, ... belief steps, how probable it can be made that one pursuer alone captures by then.
+
+    The pursuer always knows the evader's state and does its best for that very time: finite-horizon value iteration.
+
+    Parameters
+    ----------
+    problem : SearchProblem
+        The problem.
+
+    Yields
+    ------
+    tuple of ndarray, shape (C, N)
+        For each pursuer, from each checkpoint and with the evader in each state.
+
+    Raises
+    ------
+    TooLargeError
+        If a pursuer has more than 20 million positions and states.
+    """
+    model = SearchModel(problem)
+    for moves in model.kinds:
+        _check_size([moves], model.states, LARGEST)
+    walks = [Walk.of(moves, model.looks, wait=True) for moves in model.kinds]
+    free = [np.ones(walk.kept.shape) for walk in walks]
+    cells = len(model.graph)
+    while True:
+        yield tuple(1.0 - free[kind][:cells] for kind in model.kind)
+        free = [along(model.dispersion, least(walk, walk.kept * f, 0), 1) for walk, f in zip(walks, free, strict=True)]
+
+
+def _check_size(team: Sequence[Moves], states: int, largest: int) -> None:
+    positions = [len(moves.start) - 1 + int((np.delete(moves.steps, moves.start[:-1]) - 1).sum()) for moves in team]
+    size = float(np.prod([*map(float, positions), states]))
+    if size > largest:
+        raise TooLargeError(
+            f"The team and the evader have {size:.3g} joint positions; an exact result allows {largest:.3g}."
+        )
+
+
 def along(matrix: Sparse | NDArray[np.float64], array: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
     """Return the product of a matrix with every vector of an array along one axis."""
     front = np.moveaxis(array, axis, 0)
@@ -191,5 +232,5 @@ def least(walk: Walk, array: NDArray[np.float64], axis: int) -> NDArray[np.float
     """Return the least value along an axis among the positions that can follow each position."""
     front = np.moveaxis(array, axis, 0)
     order = np.argsort(walk.first, kind="stable")
-    starts = np.searchsorted(walk.first[order], np.arange(len(walk.views)))
+    starts = np.searchsorted(walk.first[order], np.arange(len(walk.kept)))
     return np.moveaxis(np.minimum.reduceat(front[walk.last[order]], starts, axis=0), 0, axis)

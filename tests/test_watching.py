@@ -10,13 +10,13 @@ import shapely
 from discretize import CellMap, convex_cells
 from geomsim import Decoupled, Evader, Random, Sensor, Stationary, Still, Team, Timing
 from geomsim.cli import main
+from geomsim.curves import mean_time
 from geomsim.trials import run_trials
-from geomsim.watching import Track, Watch, expected_looks
+from geomsim.watching import Track, Watch
 from maps import FloorPlan
-from planners import AreaSpeedDegree, StationaryMotion
 
 SENSORS = {"near": Sensor(range=5.0), "ahead": Sensor(field_of_view=math.pi / 2)}
-STILL, STROLLING = StationaryMotion(), AreaSpeedDegree()
+STILL, STROLLING = Evader(model=Still()), Evader()
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def standing(cells: CellMap, cell: int, seconds: float) -> Track:
 
 
 def test_who_stands_behind_a_pillar_is_never_seen_nor_said_to_be(pillar: CellMap) -> None:
-    watch = Watch(pillar, STILL, 1.0, 0.1)
+    watch = Watch(pillar, STILL, 0.1)
     eye = pillar.checkpoints[0]
     hidden = [shapely.LineString([eye, other]).crosses(shapely.box(4, 4, 8, 8)) for other in pillar.checkpoints[1:]]
     assert 0 < sum(hidden) < len(hidden)
@@ -41,14 +41,14 @@ def test_who_stands_behind_a_pillar_is_never_seen_nor_said_to_be(pillar: CellMap
 
 
 def test_looking_again_sees_nothing_new_but_what_moves(pillar: CellMap) -> None:
-    watch = Watch(pillar, STROLLING, 1.0, 0.1)
+    watch = Watch(pillar, STROLLING, 0.1)
     free = watch.survival(standing(pillar, 0, 30.0), [Sensor()], watch.first_belief([0]))
     assert (np.diff(free) <= 1e-15).all()
     assert free[-1] < free[0] / 2
 
 
 def test_a_slow_eye_notices_at_its_rate(pillar: CellMap) -> None:
-    watch = Watch(pillar, STILL, 1.0, 0.1)
+    watch = Watch(pillar, STILL, 0.1)
     sure, slow = (
         watch.survival(standing(pillar, 0, 20.0), [Sensor(detection=p)], watch.first_belief([0])) for p in (1.0, 0.3)
     )
@@ -57,7 +57,7 @@ def test_a_slow_eye_notices_at_its_rate(pillar: CellMap) -> None:
 
 
 def test_range_and_field_of_view(pillar: CellMap) -> None:
-    watch = Watch(pillar, STILL, 1.0, 0.1)
+    watch = Watch(pillar, STILL, 0.1)
     first = watch.first_belief([0])
     eye = pillar.checkpoints[0]
     way = pillar.checkpoints[1:] - eye
@@ -69,13 +69,12 @@ def test_range_and_field_of_view(pillar: CellMap) -> None:
     assert free["ahead"] == pytest.approx(1 - np.mean(open_view & ahead))
 
 
-def test_expected_looks_of_a_curve_that_falls_at_a_rate() -> None:
+def test_mean_time_of_a_curve_that_falls_at_a_rate() -> None:
     free = 0.9 ** np.arange(40)
-    assert expected_looks(free, math.inf) == pytest.approx(10.0)
-    assert expected_looks(free, 100) == pytest.approx(sum(0.9**k for k in range(100)))
-    assert expected_looks(free, 12) == pytest.approx(sum(0.9**k for k in range(12)))
-    assert expected_looks(np.array([0.4, 0.4, 0.4]), 10) == pytest.approx(4.0)
-    assert expected_looks(np.array([0.4, 0.0]), 10) == pytest.approx(0.4)
+    assert mean_time(free, 2.0, 1e9) == pytest.approx(20.0, rel=0.01)
+    assert mean_time(free, 1.0, 12.0) == pytest.approx(sum(0.9**k for k in range(12)))
+    assert mean_time(np.array([0.4, 0.4, 0.4]), 1.0, 10.0) == pytest.approx(4.0)
+    assert mean_time(np.array([0.4, 0.0]), 1.0, 10.0) == pytest.approx(0.4)
 
 
 METHODS = {"stationary": Stationary(), "random": Random(), "entropy": Decoupled("entropy", 2)}
@@ -85,7 +84,7 @@ METHODS = {"stationary": Stationary(), "random": Random(), "entropy": Decoupled(
     ("kind", "limit"),
     [
         ({}, 300.0),
-        ({"evader": Evader(model=Still()), "motion": STILL, "timing": Timing(limit=120.0)}, 120.0),
+        ({"evader": STILL, "timing": Timing(limit=120.0)}, 120.0),
         ({"team": Team(start=(3,), sensor=Sensor(4.0, 2.5, 0.5)), "evader": Evader(speed=0.6)}, 300.0),
     ],
 )

@@ -30,6 +30,8 @@ class Border:
         Of all of them, metres.
     door : float
         Length of those that lie in a doorway, metres.
+    middle : ndarray, shape (2,)
+        Of the whole, metres.
     doubled : complex
         Sum of each piece's length turned by twice its angle: directions add up so whichever way pieces point.
     """
@@ -37,13 +39,16 @@ class Border:
     pieces: Array
     length: float
     door: float
+    middle: Array
     doubled: complex
 
     def __add__(self, other: "Border") -> "Border":
+        length = self.length + other.length
         return Border(
             np.concatenate([self.pieces, other.pieces]),
-            self.length + other.length,
+            length,
             self.door + other.door,
+            (self.length * self.middle + other.length * other.middle) / length,
             self.doubled + other.doubled,
         )
 
@@ -137,9 +142,9 @@ def _adjacency(polygons: NDArray[np.object_], doorways: shapely.Geometry, doors:
     for start, stop in zip(starts.tolist(), np.append(starts[1:], len(pairs)).tolist(), strict=False):
         rows = order[start:stop]
         pair = (int(pairs[start, 0]), int(pairs[start, 1]))
-        borders[pair] = Border(
-            ends[rows], float(length[rows].sum()), float(in_doorway[rows].sum()), complex(doubled[rows].sum())
-        )
+        whole = float(length[rows].sum())
+        centre = length[rows] @ ends[rows].mean(axis=1) / whole
+        borders[pair] = Border(ends[rows], whole, float(in_doorway[rows].sum()), centre, complex(doubled[rows].sum()))
         if on_door[rows].any():
             barred.add(pair)
     return Faces(polygons, borders, frozenset(barred), _sills(polygons, borders))

@@ -1,21 +1,47 @@
 """From chosen faces back to the true free space: cells that cover it exactly and do not overlap."""
 
+from collections.abc import Callable
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from discretize.rooms.cuts import ring_segments
-from discretize.rooms.faces import Faces
+from discretize.rooms.faces import GRID, Faces
+from discretize.rooms.frame import Frame
 from discretize.rooms.rays import Walls
+from discretize.sharing import points_of
 
 __all__ = ["fit"]
 
+Array = NDArray[np.float64]
 
-def fit(space: shapely.Geometry, faces: Faces, owner: NDArray[np.intp], reach: float) -> list[shapely.Polygon]:
-    """Cut the free space along the boundaries between chosen cells."""
+CLOSE = 2 * GRID  # metres; corners are on the grid in either frame
+
+
+def fit(
+    space: shapely.Geometry, frame: Frame, faces: Faces, owner: NDArray[np.intp], reach: float
+) -> list[shapely.Polygon]:
+    """Cut the free space along the boundaries between chosen cells.
+
+    Parameters
+    ----------
+    space : shapely.Geometry
+        Free space, metres.
+    frame : Frame
+        Of the faces.
+    faces : Faces
+        Of the plan's structure.
+    owner : ndarray of int, shape (F,)
+        Cell of each face.
+    reach : float
+        How far a boundary is carried on to a wall, metres.
+    """
     unions = [shapely.coverage_union_all(faces.polygons[owner == k]) for k in range(owner.max() + 1)]
-    kept = _boundaries(faces, owner)
-    parts = shapely.get_parts(shapely.line_merge(kept))
+    parts = shapely.get_parts(shapely.line_merge(_boundaries(faces, owner)))
+    snap = _snap(shapely.get_coordinates(space))
+    parts = shapely.transform(shapely.set_precision(parts, 0), lambda xy: snap(frame.outward(xy)))
+    parts = shapely.remove_repeated_points(parts)
     walls = Walls(ring_segments(space))
     lines = [_reach_out(line, walls, reach) for line in parts[shapely.length(parts) > 0]]
     linework = shapely.union_all([shapely.boundary(space), *lines])
@@ -23,8 +49,9 @@ def fit(space: shapely.Geometry, faces: Faces, owner: NDArray[np.intp], reach: f
     shapely.prepare(space)
     pieces = pieces[shapely.intersects(space, shapely.point_on_surface(pieces))]
     tree = shapely.STRtree(unions)
-    piece, cell = tree.query(pieces, predicate="intersects")
-    shared = shapely.area(shapely.intersection(pieces[piece], np.array(unions, dtype=object)[cell]))
+    inward = shapely.transform(shapely.set_precision(pieces, 0), frame.inward)
+    piece, cell = tree.query(inward, predicate="intersects")
+    shared = shapely.area(shapely.intersection(inward[piece], np.array(unions, dtype=object)[cell]))
     best = np.full(len(pieces), -1)
     order = np.argsort(shared, kind="stable")
     best[piece[order]] = cell[order]
@@ -33,6 +60,19 @@ def fit(space: shapely.Geometry, faces: Faces, owner: NDArray[np.intp], reach: f
         if (best == k).any():
             groups += shapely.get_parts(shapely.union_all(pieces[best == k])).tolist()
     return groups
+
+
+def _snap(corners: Array) -> Callable[[Array], Array]:
+    """Return a function that moves places to the corner that they are, but for rounding in another frame."""
+    tree = shapely.STRtree(points_of(corners))
+
+    def snapped(places: Array) -> Array:
+        near, corner = tree.query_nearest(points_of(places), max_distance=CLOSE, all_matches=False)
+        places = places.copy()
+        places[near] = corners[corner]
+        return places
+
+    return snapped
 
 
 def _boundaries(faces: Faces, owner: NDArray[np.intp]) -> shapely.Geometry:

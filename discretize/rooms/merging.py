@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from discretize.rooms.faces import Border, Faces
+from discretize.rooms.shaking import Field
 
 __all__ = ["Limits", "Region", "Regions"]
 
@@ -135,12 +136,15 @@ class Regions:
         """
         alive: dict[int, Region] = dict(enumerate(start))
         near, barred = self._neighbours(start)
+        field = Field(rng)
         heap: list[tuple[float, int, int]] = []
 
         def offer(pairs: list[tuple[int, int]]) -> None:
             pairs = [(i, j) for i, j in pairs if j not in barred[i]]
             found = self._unions([(alive[i], alive[j], near[i][j]) for i, j in pairs])
-            shake = rng.normal(0.0, noise, len(pairs)) if noise else np.zeros(len(pairs))
+            shake = np.zeros(len(pairs))
+            if noise and pairs:
+                shake = noise * field(np.array([near[i][j].middle for i, j in pairs]))
             for (i, j), (union, merit), extra in zip(pairs, found, shake.tolist(), strict=True):
                 if union is not None:
                     heapq.heappush(heap, (-merit - extra, i, j))

@@ -5,8 +5,9 @@ import shapely
 
 from discretize.partition import Partition
 from discretize.rooms.candidates import candidate_cuts
-from discretize.rooms.faces import arrangement
+from discretize.rooms.faces import GRID, arrangement
 from discretize.rooms.fitting import fit
+from discretize.rooms.frame import frame_of
 from discretize.rooms.leftovers import absorb
 from discretize.rooms.merging import Limits
 from discretize.rooms.search import best_partition
@@ -42,13 +43,15 @@ def room_cells(
     scan = any(repair.kind == "removed furniture" for repair in plan.repairs)
     allowed = 2 * tolerance if scan else tolerance
     limits = Limits(1 - allowed, 1 - allowed, 0.6, 0.3) if scan else Limits(1 - allowed, 1 - allowed, 0.7, 0.4)
-    space = structure(plan.space, radius if scan else radius / 2, 4 * radius, 25 * radius if scan else 0.0, plan.doors)
-    doors = np.array([shapely.get_coordinates(door)[[0, -1]] for door in plan.doors]).reshape(-1, 2, 2)
+    frame = frame_of(plan.space)
+    own, *lines = shapely.set_precision([frame.turned(part) for part in (plan.space, *plan.doors)], GRID)
+    space = structure(own, radius if scan else radius / 2, 4 * radius, 25 * radius if scan else 0.0, lines)
+    doors = np.array([shapely.get_coordinates(door)[[0, -1]] for door in lines]).reshape(-1, 2, 2)
     cuts, doorways = candidate_cuts(space, doors, allowed, 2 * radius)
     faces = arrangement(space, cuts, doorways, doors)
     chosen, notes = best_partition(faces, limits, rng)
     owner = np.empty(len(faces), dtype=np.intp)
     for k, region in enumerate(chosen):
         owner[list(region.faces)] = k
-    cells = fit(plan.space, faces, absorb(faces, owner, radius), reach=3 * radius)
+    cells = fit(plan.space, frame, faces, absorb(faces, owner, radius), reach=3 * radius)
     return Partition(tuple(cells), allowed, strict=False, notes=notes)

@@ -1,6 +1,7 @@
 """The search for the best partition: many random merges pooled, an exact choice, and repair by breaking and joining."""
 
 from collections.abc import Callable
+from statistics import NormalDist
 
 import numpy as np
 import shapely
@@ -9,6 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from discretize.rooms.faces import Faces
 from discretize.rooms.merging import Limits, Region, Regions, spread
 from discretize.rooms.selection import partition
+from discretize.rooms.shaking import Field
 
 __all__ = ["best_partition", "mutual_sight"]
 
@@ -50,7 +52,8 @@ def best_partition(faces: Faces, limits: Limits, rng: np.random.Generator) -> tu
         before = len(regions.pool)
         for share in SHARES:
             start = []
-            for region, broken in zip(chosen, rng.random(len(chosen)) < share, strict=True):
+            luck = Field(rng)(np.array([region.points.mean(axis=0) for region in chosen]))
+            for region, broken in zip(chosen, [NormalDist().cdf(x) < share for x in luck.tolist()], strict=True):
                 start += [regions.single[face] for face in sorted(region.faces)] if broken else [region]
             regions.merge(start, rng, 0.1)
         if len(regions.pool) == before:

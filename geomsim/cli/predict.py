@@ -51,6 +51,7 @@ def predict(
         "lower_bound": None if result.bounds is None else float(np.mean(result.bounds)),
         "seconds_per_plan": float(np.nanmean(thought)) if np.isfinite(thought).any() else None,
         "unit": result.unit,
+        "capture": result.capture,
         "belief": result.belief,
         "plans": [[[c + result.first for c in path] for path in p.paths] for p in result.predictions],
         "per_start": [_start(p, k, result.first, result.bounds) for k, p in enumerate(result.predictions)],
@@ -61,7 +62,8 @@ def predict(
     if json:
         say_json(told)
         return 0
-    how = "in the cell model" if result.belief == "cells" else "by sight"
+    model = "by sight of parts of cells" if result.capture == "sight" else "in the cell model"
+    how = "by sight" if result.belief == "places" else model
     say(f"{result.name}: expected capture after {told['expected_time']:.2f} {result.unit}, {how}")
     if len(result.predictions) > 1:
         best, worst = (told["per_start"][int(k)] for k in (times.argmin(), times.argmax()))
@@ -70,7 +72,7 @@ def predict(
             f"to {worst['expected_time']:.2f} (cell {worst['start'][0]})"
         )
     if told["lower_bound"] is not None:
-        say(f"a team that always knew the evader's cell would need {told['lower_bound']:.2f}: none can be faster")
+        say(f"a team that always knew the evader's cell would need {told['lower_bound']:.2f} or more: none is faster")
     if told["seconds_per_plan"] is not None:
         say(f"mean time to plan: {1000 * told['seconds_per_plan']:.2f} ms")
     if len(result.predictions) == 1:

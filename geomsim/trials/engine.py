@@ -120,9 +120,7 @@ def run_trials(
 
         cells = convex_cells(plan, radius=max(team.radius, evader.radius))
     check_pursuit(cells, team, evader, capture)
-    if evader.count > 1:
-        raise GeomsimError(f"A trial has one evader, but {evader.count} were asked for; run them one at a time.")
-    reacts = bool(getattr(evader.model, "reacts", False))
+    reacts = _reason(evader) is not None
     experiment = Experiment(
         cells=cells,
         methods=made,
@@ -158,14 +156,23 @@ def run_trials(
 def _engine(asked: str, evader: Evader) -> str:
     if asked not in ENGINES:
         raise GeomsimError(f"There is no engine {asked!r}: {nearest(asked, ENGINES)}")
-    if not getattr(evader.model, "reacts", False):
+    reason = _reason(evader)
+    if reason is None:
         return "shared" if asked == "auto" else asked
     if asked == "shared":
         raise GeomsimError(
-            f"An evader of the kind {type(evader.model).__name__} reacts to robots, so that each of its trials needs "
-            "a world of its own: choose the engine 'separate' or 'auto'."
+            f"{reason}, so that each trial needs a world of its own: choose the engine 'separate' or 'auto'."
         )
     return "separate"
+
+
+def _reason(evader: Evader) -> str | None:
+    """Return why trials cannot share runs of the team, if they cannot."""
+    if getattr(evader.model, "reacts", False):
+        return f"An evader of the kind {type(evader.model).__name__} reacts to robots"
+    if evader.count > 1:
+        return f"With {evader.count} evaders robots search on for the others once one is captured"
+    return None
 
 
 def _check_start(experiment: Experiment) -> None:

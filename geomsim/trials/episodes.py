@@ -30,10 +30,10 @@ def run_episodes(experiment: Experiment, method: int, trials: list[int]) -> Meet
             timing=experiment.timing,
         )
         steps, out = len(episode.times) - 1, episode.outcome
-        tracks = np.concatenate([episode.pursuers, episode.evader[:, np.newaxis]], axis=1)
+        tracks = np.concatenate([episode.pursuers, episode.evaders], axis=1)
         found.crossings += blocked_moves(grid, tracks)
         found.evader_steps += steps
-        if any("evader" in note for note in out.notes):
+        if any("evader" in note.lower() for note in out.notes):
             found.held_up.add(k)
         if out.pursuer is None or out.cell is None or out.position is None:
             found.rows.append(experiment.row(method, k, steps, captured=False))

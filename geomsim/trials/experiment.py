@@ -37,13 +37,13 @@ class Row:
         Of the team's run; ``run_episode(..., seed=seed, team_seed=team_seed)`` repeats the trial. For a planner that
         draws no random numbers any would do.
     start : int
-        Number of the cell in which the evader starts, from 1.
+        Number of the cell in which the evader starts, from 1; of several the first.
     captured : bool
-        Whether it was captured within the time limit.
+        Whether it was captured within the time limit; of several, whether all were.
     time : float
-        When it was captured, or the time limit; seconds.
+        When it, or the last of several, was captured, or the time limit; seconds.
     pursuer : int or None
-        Number of the robot that captured it, from 1.
+        Number of the robot that did so, from 1.
     cell : int or None
         Number of the cell in which it was captured, from 1.
     x, y : float or None

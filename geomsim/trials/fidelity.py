@@ -2,43 +2,24 @@
 
 from __future__ import annotations
 
-import math
-import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geomsim.believing import believed_problem
-from geomsim.seeds import Streams
+from geomsim.curves import lengthened, mean_time
+from geomsim.team import Evader
 from geomsim.trials.experiment import Experiment
 from geomsim.trials.statistics import Survival
-from planners import (
-    Planner,
-    Policy,
-    Prediction,
-    SearchProblem,
-    TooLargeError,
-    predict,
-)
+from geomsim.trials.teamruns import TeamRun
+from planners import DwellTime, MotionModel, SearchGraph, uniform_belief
+
+if TYPE_CHECKING:
+    from planners.motion import Sparse
 
 __all__ = ["Forecast", "forecast"]
-
-#: a pursuit is followed until it has ended with all but this probability; beyond it goes on at the same rate
-_RESIDUE = 1e-4
-
-#: runs of a team in the cell model where its planner draws random numbers and its Markov chain is too large
-_SAMPLES = 20
-
-
-@dataclass(frozen=True, slots=True)
-class _Unknown:
-    """A planner whose kind is hidden, so that its decisions are followed whatever it is."""
-
-    planner: Planner
-
-    def solve(self, problem: SearchProblem, rng: np.random.Generator) -> Policy:
-        return self.planner.solve(problem, rng)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +29,11 @@ class Forecast:
     Attributes
     ----------
     mean : float
-        Expected capture time, up to the time limit if the curve goes so far, seconds.
+        Expected capture time, where an evader still free at the time limit counts with that; seconds.
     free : ndarray, shape (T + 1,)
-        Probability that the evader is free after each belief step.
+        Probability that the evader is free after each physics step.
     step : float
-        Of the belief, seconds.
+        Of physics, or of looks by sight, seconds.
     begin : float
         Time of the first one, seconds.
     """
@@ -70,34 +51,68 @@ class Forecast:
         return float(np.abs(seen - self.free[: len(at)]).max())
 
 
-def forecast(experiment: Experiment, method: int) -> Forecast | None:
-    """Predict a method in the cell model, with what its team believes; None where that has no finite answer.
+def forecast(experiment: Experiment, runs: Sequence[TeamRun]) -> Forecast:
+    """Predict how long a team takes: exactly, in cells.
 
-    The answer is exact, but for a planner that draws random numbers and whose Markov chain is too large: then it is
-    the mean of 20 runs, each exact. There is none where the team believes that it may never capture.
+    Until capture a team's run does not depend on the evader, so its way through the cells is known; the evader is a
+    Markov chain on them. Its probability of being free after each physics step is a product of matrices (Eq. 3), with
+    robots that enter a cell when they do, and without sampling. Several runs, where chance has a part in the team's
+    decisions, are averaged. After its end a run is taken to go on at the rate of its last half.
+
+    The evader dwells in each cell as long as one that walks from checkpoint to checkpoint does on average
+    (:class:`planners.DwellTime`), unless its model tells otherwise (its ``in_cells``). That time has two halves, before
+    and after the checkpoint; it begins at one. Capture is in the same cell, as likely as the sensor notices. Of several
+    evaders the last one counts, for a team that goes on as if none had been captured.
+
+    Parameters
+    ----------
+    experiment : Experiment
+        What is compared.
+    runs : sequence of TeamRun
+        Those of one method.
     """
-    team, timing, starts = experiment.team_for(method), experiment.timing, experiment.starts
-    roads, problem = believed_problem(experiment.cells, team, experiment.motion, timing.belief_step)
-    belief = problem.first_belief(starts, int(roads.graph.component[starts[0]]))
-    seed, steps = experiment.seeds[0], max(1, math.ceil(timing.limit / timing.belief_step))
+    step, limit = experiment.timing.physics_step, experiment.timing.limit
+    curves = _free(experiment, runs)
+    mean = float(np.mean([mean_time(curve, step, limit) for curve in curves]))
+    length = max(map(len, curves))
+    free = np.mean([lengthened(curve, length) for curve in curves], axis=0)
+    return Forecast(mean, free, step)
 
-    def ask(planner: Planner, rng: np.random.Generator, residue: float) -> Prediction:
-        return predict(problem, planner, [starts], rng, belief=belief, residue=residue, longest=steps)[0]
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a linear system without a solution, seen below
-        try:
-            told = [ask(team.planner, Streams(seed).deciding, _RESIDUE)]
-        except TooLargeError:
-            chance = Streams(seed).deciding.spawn(_SAMPLES)
-            told = [ask(_Unknown(team.planner), rng, 10 * _RESIDUE) for rng in chance]
-        except (OverflowError, ValueError):
-            return None
-    mean = float(np.mean([one.expected_time for one in told]))
-    if not math.isfinite(mean) or mean < 0:
-        return None
-    length = max(len(one.survival) for one in told)
-    free = np.mean([np.pad(one.survival, (0, length - len(one.survival)), mode="edge") for one in told], axis=0)
-    if length > steps:
-        mean = float(free[:steps].sum()) * timing.belief_step
-    return Forecast(mean, free, timing.belief_step)
+def _free(experiment: Experiment, runs: Sequence[TeamRun]) -> list[NDArray[np.float64]]:
+    """Return for each run the probability that the evader is free after each of its physics steps."""
+    graph, starts, step = SearchGraph.from_cells(experiment.cells), experiment.starts, experiment.timing.physics_step
+    transposed = _halved(_motion(experiment.evader).matrix(graph, step)[1:, 1:]).T.tocsr()
+    kept = np.exp([-sensor.attention * step for sensor in experiment.team.sensors])
+    first = uniform_belief(graph, exclude=starts, component=int(graph.component[starts[0]]))[1:]
+    states = np.tile(np.concatenate([np.zeros_like(first), first])[:, np.newaxis], len(runs))
+    longest, column = max(run.steps for run in runs), np.arange(len(runs))
+    free = np.empty((longest + 1, len(runs)))
+    free[0] = 1.0
+    # a run that has ended stands still; what comes out for it is cut off
+    cells = np.stack([np.pad(run.cells, ((0, longest - run.steps), (0, 0)), mode="edge") for run in runs], axis=1)
+    for k in range(1, longest + 1):
+        states = transposed @ states
+        for i, share in enumerate(kept):
+            for half in (0, len(graph)):
+                states[cells[k, :, i] + half, column] *= share
+        free[k] = states.sum(axis=0)
+    free = 1.0 - (1.0 - free) ** experiment.evader.count
+    return [free[: run.steps + 1, r] for r, run in enumerate(runs)]
+
+
+def _motion(evader: Evader) -> MotionModel:
+    in_cells = getattr(evader.model, "in_cells", DwellTime)
+    return cast(MotionModel, in_cells(evader.speed))
+
+
+def _halved(dispersion: Sparse) -> Sparse:
+    """Split each cell into its time before and after the checkpoint, each left twice as fast; shape (2 N, 2 N)."""
+    from scipy.sparse import block_array, csr_array, diags_array
+
+    leaves = 1.0 - dispersion.diagonal()
+    faster = np.minimum(1.0, 2.0 * leaves)
+    share = np.divide(faster, leaves, out=np.zeros_like(leaves), where=leaves > 0)
+    moves = diags_array(share) @ (dispersion - diags_array(dispersion.diagonal()))
+    stays, turns = diags_array(1.0 - faster), diags_array(faster)
+    return csr_array(block_array([[stays, turns], [moves, stays]]))

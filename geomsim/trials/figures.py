@@ -41,10 +41,9 @@ def draw_means(trials: Trials, path: Path) -> Path:
     axes.barh(rows, means, height=0.62, color="#9db8cf", label="mean of trials")
     errors = np.array([line.observed.sem or 0.0 for line in summary.methods])
     axes.errorbar(means, rows, xerr=errors, fmt="none", ecolor=_INK, capsize=3, lw=1.2, label="standard error")
-    told = [(line.predicted, row) for line, row in zip(summary.methods, rows, strict=True) if line.predicted]
-    if told:
-        axes.plot(*zip(*told, strict=True), "D", color="#d55e00", ms=5, ls="none", label="predicted")
-    end = max(float((means + errors).max()), *(mean for mean, _ in told), 1e-9)
+    told = [line.predicted for line in summary.methods]
+    axes.plot(told, rows, "D", color="#d55e00", ms=5, ls="none", label="predicted")
+    end = max(float((means + errors).max()), *told, 1e-9)
     wide = means.min() > 0 and end > 12 * means.min()
     if wide:
         axes.set_xscale("log")
@@ -138,16 +137,16 @@ def draw_fidelity(trials: Trials, path: Path) -> Path | None:
     Returns
     -------
     Path or None
-        None, and nothing is written, where no method has a prediction.
+        None, and nothing is written, where every capture is at once, which has no logarithm.
     """
     from matplotlib.ticker import LogLocator
 
     summary = trials.summary()
-    told = [line for line in summary.methods if line.predicted and line.observed.mean > 0]
+    told = [line for line in summary.methods if line.predicted > 0 and line.observed.mean > 0]
     if not told:
         return None
     figure, axes = _figure(8.0, 5.2)
-    means = np.array([[line.predicted or np.nan, line.observed.mean] for line in told])
+    means = np.array([[line.predicted, line.observed.mean] for line in told])
     span = np.array([0.8 * means.min(), 1.25 * means.max()])
     axes.fill_between(span, 0.9 * span, 1.1 * span, color="#9db8cf", alpha=0.35, lw=0, label="within 10 %")
     axes.plot(span, span, color=_INK, lw=0.8)

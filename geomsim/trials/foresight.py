@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from geomsim.curves import lengthened, mean_time
 from geomsim.trials.experiment import Experiment
 from geomsim.trials.fidelity import Forecast
 from geomsim.trials.teamruns import TeamRun
-from geomsim.watching import Track, Watch, expected_looks
+from geomsim.watching import Track, Watch
 
 __all__ = ["foresee"]
 
@@ -27,13 +28,14 @@ def foresee(experiment: Experiment, runs: Sequence[TeamRun]) -> Forecast:
     Returns
     -------
     Forecast
-        Its mean counts who is never seen with the time limit.
+        Its mean counts who is never seen with the time limit; of several evaders the last one counts.
     """
     timing, team = experiment.timing, experiment.team
-    watch = Watch(experiment.cells, experiment.motion, experiment.evader.speed, timing.physics_step)
+    watch = Watch(experiment.cells, experiment.evader, timing.physics_step)
     first, sensors = watch.first_belief(experiment.starts), team.sensors
     curves = [watch.survival(Track(run.eyes, run.headings, timing.physics_step), sensors, first) for run in runs]
-    means = [expected_looks(curve, timing.limit / watch.step) * watch.step for curve in curves]
+    curves = [1.0 - (1.0 - curve) ** experiment.evader.count for curve in curves]
+    mean = float(np.mean([mean_time(curve, watch.step, timing.limit) for curve in curves]))
     length = max(map(len, curves))
-    free = np.mean([np.pad(curve, (0, length - len(curve)), mode="edge") for curve in curves], axis=0)
-    return Forecast(float(np.mean(means)), free, watch.step, watch.begin)
+    free = np.mean([lengthened(curve, length) for curve in curves], axis=0)
+    return Forecast(mean, free, watch.step, watch.begin)

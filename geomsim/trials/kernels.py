@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from discretize import WallGrid
-from discretize.raycast import compiled, free_line, grid_arrays
+from discretize.raycast import blocking_wall, blocks, compiled, free_line, grid_arrays
 
 __all__ = ["Looked", "Lookers", "blocked_moves", "first_looks", "first_meetings"]
 
@@ -24,6 +24,11 @@ def _blocked(walls, first, members, x0, y0, size, columns, rows, track):  # type
     for t in range(len(track) - 1):
         for k in range(track.shape[1]):
             ax, ay, bx, by = track[t, k, 0], track[t, k, 1], track[t + 1, k, 0], track[t + 1, k, 1]
+            i, j = math.floor((ax - x0) / size), math.floor((ay - y0) / size)
+            if i == math.floor((bx - x0) / size) and j == math.floor((by - y0) / size):
+                square = min(max(j, 0), rows - 1) * columns + min(max(i, 0), columns - 1)
+                if first[square] == first[square + 1]:
+                    continue  # most moves stay within a square that holds no wall
             if (ax != bx or ay != by) and not free_line(
                 walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by
             ):
@@ -55,6 +60,8 @@ def _looks(  # type: ignore[no-untyped-def]
 ):
     free = which.copy()
     left = len(free)
+    # the wall that hid an evader a step ago mostly hides it still
+    hides = np.full(looked.shape, -1, dtype=np.int32)
     for t in range(len(targets)):
         kept = 0
         for n in range(left):
@@ -71,7 +78,11 @@ def _looks(  # type: ignore[no-untyped-def]
                     off -= 2 * math.pi * np.rint(off / (2 * math.pi))
                     if abs(off) > half[i]:
                         continue
-                if free_line(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):
+                w = hides[k, i]
+                if w >= 0 and blocks(walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], ax, ay, bx, by):
+                    continue
+                hides[k, i] = blocking_wall(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by)
+                if hides[k, i] < 0:
                     looked[k, i] += rates[i]
                     if looked[k, i] >= patience[k, i]:
                         when[k], who[k] = t, i

@@ -72,9 +72,9 @@ def _table(trials: Trials) -> tuple[tuple[str, ...], Cells]:
                 _told(seen.sem, 1),
                 _told(seen.median, 1),
                 f"{seen.captured_share:.1%}",
-                _told(line.predicted, 1),
-                _told(None if line.predicted is None else line.predicted / seen.mean, 2),
-                _told(line.gap, 3),
+                f"{line.predicted:.1f}",
+                f"{line.predicted / seen.mean:.2f}",
+                f"{line.gap:.3f}",
             )
         )
     return head, rows

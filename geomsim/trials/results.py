@@ -37,14 +37,14 @@ class MethodRun:
         What they took to compute.
     seconds_per_decision : float
         The same for each decision of the planner, the belief and the bodies included.
-    forecast : Forecast or None
+    forecast : Forecast
         What is predicted.
     """
 
     runs: int
     seconds: float
     seconds_per_decision: float
-    forecast: Forecast | None
+    forecast: Forecast
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +57,10 @@ class MethodSummary:
         Of the method.
     observed : Sample
         What the trials say.
-    predicted : float or None
+    predicted : float
         Predicted mean capture time, seconds: by a belief over places where capture is by sight, else in the cell
-        model; None where there is no finite answer.
-    gap : float or None
+        model.
+    gap : float
         Largest difference between the predicted and the observed share captured, over time.
     difference : Difference or None
         Against the reference; None for the reference itself.
@@ -70,8 +70,8 @@ class MethodSummary:
 
     name: str
     observed: Sample
-    predicted: float | None
-    gap: float | None
+    predicted: float
+    gap: float
     difference: Difference | None
     run: MethodRun
 
@@ -111,7 +111,7 @@ class Summary:
             seen, gap = method.observed, method.difference
             mean = f"{'>=' if seen.censored else ''}{seen.mean:.1f}"
             cells = f"{mean:>8} {_told(seen.sem, 2):>6} {_told(seen.median, 1):>7} {seen.captured_share:>8.1%}"
-            line = f"{method.name:<{width}}  {cells} {_told(method.predicted, 1):>9}"
+            line = f"{method.name:<{width}}  {cells} {method.predicted:>9.1f}"
             if gap is not None:
                 line += f"  {gap.difference:+.1f} [{_told(gap.low, 1, '+')}, {_told(gap.high, 1, '+')}]"
             lines.append(line)
@@ -189,14 +189,11 @@ class Trials:
         lines = []
         for name, run in zip(self.names, self.runs, strict=True):
             times = self.times(name)
-            told = run.forecast
-            gap = None if told is None else told.gap(self.survival(name), self.experiment.timing.limit)
-            predicted = None if told is None else told.mean
+            gap = run.forecast.gap(self.survival(name), self.experiment.timing.limit)
             difference = None if name == self.reference else compare_times(times, reference)
-            lines.append(MethodSummary(name, describe_times(times), predicted, gap, difference, run))
-        pairs = [(line.observed.mean, line.predicted) for line in lines if line.predicted is not None]
-        seen, said = np.array(pairs).reshape(-1, 2).T
-        varied = len(pairs) > 1 and np.ptp(seen) > 0 and np.ptp(said) > 0
+            lines.append(MethodSummary(name, describe_times(times), run.forecast.mean, gap, difference, run))
+        seen, said = np.array([(line.observed.mean, line.predicted) for line in lines]).T
+        varied = len(lines) > 1 and np.ptp(seen) > 0 and np.ptp(said) > 0
         tau = float(kendalltau(seen, said).statistic) if varied else None
         return Summary(tuple(lines), self.reference, self.experiment.trials, self.experiment.timing.limit, tau)
 
@@ -215,6 +212,7 @@ class Trials:
                     "censored": line.observed.censored,
                     "trials": self.experiment.trials,
                     "predicted_mean": line.predicted,
+                    "predicted_ratio": line.predicted / line.observed.mean,
                     "curve_gap": line.gap,
                     "belief": self.experiment.team_for(k).belief,
                     "team_runs": line.run.runs,

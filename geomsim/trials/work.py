@@ -29,11 +29,11 @@ _FIRST_ROUND, _FURTHER = 75.0, 4
 #: most evaders in one space: with more the broad phase costs more than it saves
 _BLOCK = 500
 
+#: most runs of a team that a forecast follows: where evaders react each trial has one of its own
+_FORECASTS = 20
+
 #: trials in a task of the separate engine
 _EPISODES = 8
-
-#: most team runs that a forecast of capture by sight is made by
-_FORESEEN = 50
 
 Progress = Callable[[str, int, int], None]
 """Told a method's name, how many of its trials are decided, and how many there are."""
@@ -50,7 +50,7 @@ class Work:
     rows: dict[tuple[int, int], Row] = field(default_factory=dict)
     runs: dict[int, dict[int, TeamRun]] = field(default_factory=dict)
     seconds: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
-    forecasts: dict[int, Forecast | None] = field(default_factory=dict)
+    forecasts: dict[int, Forecast] = field(default_factory=dict)
     crossings: int = 0
     held_up: set[int] = field(default_factory=set)
 
@@ -98,24 +98,27 @@ class Work:
 
     def settle(self) -> None:
         """Learn what does not depend on evaders: whether chance had a part, and what is predicted."""
-        for m, method in enumerate(self.experiment.methods):
-            last = max(row.time for row in self.rows.values() if row.method == method.name)
-            reach = next(steps for steps in self.rounds() if steps * self.experiment.timing.physics_step >= last - 1e-6)
-            self._run([(m, [0])], reach)
-            if self.experiment.capture == "sight" and self.runs[m][0].drew:
-                self._run([(m, list(range(self._foreseen())))], reach)
-        tasks = [(self.experiment, m, self._ways(m)) for m in self.runs]
+        tasks = []
+        for m in self.runs:
+            self._run([(m, [0])], max(self._reaches(m, 1)))
+            runs = self.experiment.team_runs if self.runs[m][0].drew else 1
+            reaches = self._reaches(m, runs)[:_FORECASTS]
+            for steps in sorted(set(reaches)):
+                self._run([(m, [r for r, reach in enumerate(reaches) if reach == steps])], steps)
+            sight = self.experiment.capture == "sight"
+            met = [self.runs[m][r].cut(steps, sight=sight) for r, steps in enumerate(reaches)]
+            tasks.append((self.experiment, m, met))
         self.forecasts = dict(self.workforce.do(_numbered_forecast, tasks))
 
-    def _foreseen(self) -> int:
-        """Return how many runs of a team whose planner draws random numbers a forecast is made by."""
-        return min(self.experiment.team_runs, _FORESEEN)
-
-    def _ways(self, method: int) -> list[TeamRun]:
-        """Return the runs by which a forecast of capture by sight is made; none where capture is by cell."""
-        runs = self.runs[method]
-        count = self._foreseen() if runs[0].drew else 1
-        return [runs[r] for r in range(count)] if self.experiment.capture == "sight" else []
+    def _reaches(self, method: int, runs: int) -> list[int]:
+        """Return how far each run of a team went in the round in which the last of its trials was decided."""
+        last = np.zeros(runs)
+        for (m, trial), row in self.rows.items():
+            if m == method:
+                last[trial % runs] = max(last[trial % runs], row.time)
+        ends = list(self.rounds())
+        at = np.searchsorted(np.array(ends) * self.experiment.timing.physics_step, last - 1e-6)
+        return [ends[k] for k in at.tolist()]
 
     def _run_teams(self, free: Mapping[int, list[int]], steps: int) -> None:
         """Make sure of the team runs that the free trials meet; the first run tells whether chance has a part."""
@@ -213,5 +216,6 @@ def _numbered_run(experiment: Experiment, method: int, runs: list[int], steps: i
     return method, run_team(experiment, method, runs, steps)
 
 
-def _numbered_forecast(experiment: Experiment, method: int, ways: list[TeamRun]) -> tuple[int, Forecast | None]:
-    return method, foresee(experiment, ways) if ways else forecast(experiment, method)
+def _numbered_forecast(experiment: Experiment, method: int, runs: list[TeamRun]) -> tuple[int, Forecast]:
+    predict = foresee if experiment.capture == "sight" else forecast
+    return method, predict(experiment, runs)

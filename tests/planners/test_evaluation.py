@@ -119,6 +119,22 @@ def test_no_planner_beats_the_bound(house, planner):
         assert 1.0 <= bound <= result.expected_time
 
 
+@pytest.mark.parametrize("speeds", [(1.0,), (1.0, 0.5), (1.0, 1.0, 2.0)])
+def test_the_bound_for_large_problems_is_a_bound(metric_house, speeds, monkeypatch):
+    problem = SearchProblem(metric_house, AreaSpeedDegree(), SameCell(0.9), speeds)
+    starts = [(0,) * len(speeds), (3, 8, 6)[: len(speeds)]]
+    exact = lower_bounds(problem, starts) if len(speeds) < 3 else None
+    monkeypatch.setattr("planners.evaluation.LARGEST_BOUND", 10)
+    loose = lower_bounds(problem, starts)
+    best = predict(problem, Beam(width=100), starts, np.random.default_rng(0))
+    for k, result in enumerate(best):
+        assert 1.0 <= loose[k] <= (result.expected_time if exact is None else exact[k] + 1e-6)
+        if exact is not None:
+            assert exact[k] <= result.expected_time
+    if len(speeds) == 1:
+        assert loose == pytest.approx(exact, rel=0.1)
+
+
 def test_the_bound_of_a_chase_by_hand():
     # A path of three cells, pursuer in the middle, evader known to stay with 1/2 or come with 1/2: caught at once.
     problem = unit_problem(SearchGraph.from_edges(3, [(0, 1), (1, 2)]), 1)

@@ -153,6 +153,31 @@ def test_who_reacts_gets_a_world_of_its_own(house: CellMap) -> None:
         compare(house, evader=Evader(model=Fleeing()), engine="shared")
 
 
+def test_several_evaders(house: CellMap) -> None:
+    """A trial ends with the last of them; robots learn of each capture, so that each trial has a world of its own."""
+    pair = compare(house, evader=Evader(count=2), capture="cell", trials=8)
+    assert (pair.engine, len(pair.rows), pair.wall_crossings) == ("separate", 24, 0)
+    for row in pair.rows[::5]:
+        team = Team(planner=FAST[row.method])
+        episode = run_episode(
+            house.plan,
+            house,
+            team,
+            Evader(count=2),
+            seed=row.seed,
+            team_seed=row.team_seed,
+            capture="cell",
+            timing=Timing(limit=400.0),
+        )
+        assert (episode.outcome.captured, episode.outcome.time) == (row.captured, pytest.approx(row.time))
+        assert len(episode.outcome.captures) == 2
+    one = compare(house, capture="cell", trials=8)
+    for alone, both in zip(one.summary().methods, pair.summary().methods, strict=True):
+        assert both.predicted > alone.predicted
+    with pytest.raises(GeomsimError, match="With 2 evaders robots search on"):
+        compare(house, evader=Evader(count=2), engine="shared")
+
+
 def test_what_is_not_captured_is_censored(house: CellMap) -> None:
     trials = compare(
         house, evader=Evader(model=Still()), team=Team(start=(7,)), capture="cell", timing=Timing(limit=30.0)
