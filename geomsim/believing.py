@@ -42,7 +42,16 @@ def believed_problem(
         How the evader is believed to move between cells.
     belief_step : float
         Seconds.
+
+    Raises
+    ------
+    GeomsimError
+        If there is no such problem for what the team believes.
     """
+    if team.believes == "particles":
+        raise GeomsimError(
+            "Robots do not plan on a belief of particles, which serves predictions by sight; let it be places."
+        )
     roads = Roads.of(cells, team.checkpoints)
     if team.believes == "cell" and team.checkpoints == "centroids":
         own = tuple(SameCell(_noticed(sensor, belief_step)) for sensor in team.sensors)

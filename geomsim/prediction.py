@@ -45,8 +45,8 @@ class ScenarioPrediction:
         Of the times: "s", or "steps" in an edge list.
     capture : {"cell", "sight"}
         What counts as capture.
-    belief : {"cells", "places"}
-        What it is computed by: the cell model, or the team's run in the world and a belief over places.
+    belief : {"cells", "places", "particles"}
+        What it is computed by: the cell model, or the team's run in the world and a belief over places or particles.
     step : float
         From one value of a survival curve to the next, in that unit.
     scenario : dict
@@ -127,13 +127,18 @@ def _by_sight(scenario: Scenario, *, everywhere: bool) -> ScenarioPrediction:
     plan, cells = scenario.place()
     team, timing, motion = scenario.team(), scenario.timing(), scenario.belief_motion()
     starts = _common(SearchGraph.from_cells(cells), scenario.pursuers) if everywhere else [place_team(cells, team)]
+    belief = "particles" if scenario.belief == "particles" else "places"
+    planning = replace(team, believes=scenario.belief_capture) if belief == "particles" else team
     predictions = tuple(
-        predict_sight(cells, team, start, scenario.quarry(), motion, timing, scenario.seed) for start in starts
+        predict_sight(
+            cells, planning, start, scenario.quarry(), motion, timing, scenario.seed, particles=belief == "particles"
+        )
+        for start in starts
     )
     _, problem = believed_problem(cells, replace(team, believes="places"), motion, timing.belief_step)
     bounds = lower_bounds(problem, starts, reachable=True)
     step = timing.physics_step * looks_every(timing.physics_step)
-    return ScenarioPrediction(plan.name, predictions, bounds, 1, "s", "sight", "places", step, scenario.as_dict())
+    return ScenarioPrediction(plan.name, predictions, bounds, 1, "s", "sight", belief, step, scenario.as_dict())
 
 
 def is_edge_list(plan: str) -> bool:

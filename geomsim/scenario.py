@@ -139,7 +139,7 @@ class Scenario(BaseModel):
             sensor=self._sensors(),
             communication=Communication(self.communication, self.communication_range or math.inf),
             checkpoints=self.checkpoints,
-            believes="places" if self.belief == "places" else self.belief_capture,
+            believes=self.belief_capture if self.belief == "cells" else self.belief,
         )
 
     def _sensors(self) -> Sensor | tuple[Sensor, ...]:
@@ -281,7 +281,7 @@ def describe(
         "communication_range": team.communication.range,
         "capture": capture,
         "belief": team.belief,
-        "belief_capture": "cell" if team.belief == "places" else team.believes,
+        "belief_capture": team.believes if team.belief == "cells" else "cell",
         "range": _each([sensor.range for sensor in team.sensors]),
         "fov_degrees": _each([math.degrees(sensor.field_of_view) for sensor in team.sensors]),
         "detection": _each([sensor.detection for sensor in team.sensors]),

@@ -10,11 +10,12 @@ import numpy as np
 
 from discretize import CellMap
 from geomsim.curves import lengthened, mean_time
+from geomsim.particles import Swarm
 from geomsim.pursuit import Timing
 from geomsim.seeds import Streams, trial_seeds
 from geomsim.team import Evader, Team
 from geomsim.teamwork import Teamwork
-from geomsim.watching import Watch
+from geomsim.watching import Lookout, Watch
 from planners import Decision, MotionModel, Planner, Policy, Prediction, SearchProblem, SearchState
 
 __all__ = ["predict_sight"]
@@ -33,6 +34,8 @@ def predict_sight(
     motion: MotionModel,
     timing: Timing,
     seed: int,
+    *,
+    particles: bool = False,
 ) -> Prediction:
     """Return the distribution of the time to sight.
 
@@ -55,7 +58,9 @@ def predict_sight(
     timing : Timing
         Clocks; the prediction ends at their limit.
     seed : int
-        The planner's chance comes from it.
+        The planner's chance comes from it, and that of particles.
+    particles : bool
+        Whether to follow particles instead, see :class:`geomsim.particles.Swarm`.
 
     Returns
     -------
@@ -64,9 +69,16 @@ def predict_sight(
     """
     watch = Watch(cells, evader, timing.physics_step)
     seeds = trial_seeds(seed, _RUNS)
-    runs = [_Run(watch, cells, team, starts, motion, timing, seeds[0])]
+    belief = watch.first_belief(starts)
+
+    def follow(seed: int) -> _Run:
+        chance = np.random.default_rng(seed)
+        looker = Swarm(watch, team.sensors, belief, chance) if particles else watch.lookout(team.sensors, belief)
+        return _Run(looker, watch.every, cells, team, starts, motion, timing, seed)
+
+    runs = [follow(seeds[0])]
     if runs[0].drew:
-        runs += [_Run(watch, cells, team, starts, motion, timing, one) for one in seeds[1:]]
+        runs += [follow(one) for one in seeds[1:]]
     curves = [1.0 - (1.0 - run.curve) ** evader.count for run in runs]
     length = max(map(len, curves))
     free = np.mean([lengthened(curve, length) for curve in curves], axis=0)
@@ -80,7 +92,8 @@ class _Run:
 
     def __init__(
         self,
-        watch: Watch,
+        looker: Lookout | Swarm,
+        every: int,
         cells: CellMap,
         team: Team,
         starts: Sequence[int],
@@ -92,13 +105,12 @@ class _Run:
         fresh, clocked = chance.bit_generator.state, _Clocked(team.planner)
         timed = replace(team, planner=clocked)
         work = Teamwork(cells, timed, starts, motion, timing.belief_step, [chance])
-        looker = watch.lookout(team.sensors, watch.first_belief(starts))
         curve: list[float] = []
         for k in range(timing.steps):
             work.step(k * timing.physics_step, timing.physics_step)
             if (k + 1) % timing.steps_per_belief == 0:
                 work.learn()
-            if k % watch.every == 0:
+            if k % every == 0:
                 curve.append(looker.look(work.positions[0], work.headings[0]))
                 if curve[-1] < _RESIDUE:
                     break

@@ -24,6 +24,7 @@ BELIEVED_CAPTURES = {
 BELIEFS = {
     "cells": "in which cell the evader is (the paper's belief)",
     "places": "in which place on the routes between checkpoints it is, and which way it goes; caught is who is seen",
+    "particles": "a hundred thousand of them, for predictions by sight only",
 }
 
 
@@ -51,8 +52,9 @@ class Team:
         Whether one planner plans for all, or each for itself, and who hears whom.
     checkpoints : {"centroids", "boundaries"}
         Where they decide anew: at the centroids of cells, or also where they pass from cell to cell.
-    believes : {"cell", "sight", "places"}
-        What they count on to catch, see ``BELIEVED_CAPTURES``; or that they believe in places, see ``BELIEFS``.
+    believes : {"cell", "sight", "places", "particles"}
+        What they count on to catch, see ``BELIEVED_CAPTURES``; or that they believe in places or particles, see
+        ``BELIEFS``.
 
     Raises
     ------
@@ -82,7 +84,7 @@ class Team:
             _check_body("pursuer", speed, self.radius)
         for what, name, known in (
             ("kind of checkpoints", self.checkpoints, CHECKPOINTS),
-            ("believed capture", self.believes, (*BELIEVED_CAPTURES, "places")),
+            ("believed capture", self.believes, (*BELIEVED_CAPTURES, "places", "particles")),
         ):
             if name not in known:
                 raise GeomsimError(f"There is no {what} {name!r}; {nearest(name, known)}")
@@ -90,7 +92,7 @@ class Team:
     @property
     def belief(self) -> str:
         """What they believe in, see ``BELIEFS``."""
-        return "places" if self.believes == "places" else "cells"
+        return self.believes if self.believes in BELIEFS else "cells"
 
     @property
     def speeds(self) -> tuple[float, ...]:

@@ -20,7 +20,7 @@ from planners import DwellTime, StationaryMotion, uniform_belief
 if TYPE_CHECKING:
     from planners.motion import Sparse
 
-__all__ = ["LOOK_STEP", "Lookout", "Track", "Watch", "looks_every"]
+__all__ = ["LOOK_STEP", "Lookout", "Track", "Watch", "looks_every", "missed_at"]
 
 #: between two looks, seconds, as near as physics steps allow: what shows for a shorter time may be missed. Measured on
 #: the bundled plans, half a second is too long in the small house only.
@@ -64,23 +64,28 @@ class Watch:
 
     Attributes
     ----------
+    speed : float
+        Of the evader, metres a second; 0 if it stands still.
     places : Places
         Where it is looked for: in a look's time an evader goes from one to the next.
     every : int
         Physics steps from one look to the next. Bodies set out one step late, so the first look is after one step.
     begin, step : float
         Time of the first look, and from one to the next, seconds.
+    grid : WallGrid
+        Walls.
     """
 
     def __init__(self, cells: CellMap, evader: Evader, physics_step: float) -> None:
         self.every = looks_every(physics_step)
         self.begin, self.step = physics_step, self.every * physics_step
-        believed = StationaryMotion() if isinstance(evader.model, Still) else DwellTime(evader.speed)
-        moves = strolling(cells, believed, self.step)
+        still = isinstance(evader.model, Still)
+        self.speed = 0.0 if still else evader.speed
+        moves = strolling(cells, StationaryMotion() if still else DwellTime(evader.speed), self.step)
         self.places = moves.places
         inner: Sparse = moves.matrix(self.places.roads.graph, self.step)[1:, 1:]
         self.transposed = inner.T.tocsr()
-        self._grid = WallGrid.of(cells.plan.walls)
+        self.grid = WallGrid.of(cells.plan.walls)
 
     def first_belief(self, starts: Sequence[int]) -> NDArray[np.float64]:
         """Return where an evader is that sets out from any checkpoint but those of robots alike; shape (N,)."""
@@ -117,15 +122,42 @@ class Watch:
 
     def missed(self, sensor: Sensor, eye: NDArray[np.float64], heading: float) -> NDArray[np.float64]:
         """Return the probability of missing an evader in each place at one look, shape (N,)."""
-        from discretize.raycast import seen_from
+        return missed_at(self.grid, self.places.points, sensor, eye, heading, self.step)
 
-        points = self.places.points
-        seen = seen_from(self._grid, eye, points, sensor.range)
-        if sensor.field_of_view < math.tau:
-            way = points - eye
-            off = np.arctan2(way[:, 1], way[:, 0]) - heading
-            seen &= (np.abs(np.arctan2(np.sin(off), np.cos(off))) <= sensor.field_of_view / 2) | ~way.any(axis=1)
-        return np.where(seen, math.exp(-sensor.attention * self.step), 1.0)
+
+def missed_at(
+    grid: WallGrid,
+    points: NDArray[np.float64],
+    sensor: Sensor,
+    eye: NDArray[np.float64],
+    heading: float,
+    step: float,
+) -> NDArray[np.float64]:
+    """Return the probability of missing an evader at each point, shape (N,), in a look that lasts for a step.
+
+    Parameters
+    ----------
+    grid : WallGrid
+        Walls.
+    points : ndarray, shape (N, 2)
+        Metres.
+    sensor : Sensor
+        The eye's.
+    eye : ndarray, shape (2,)
+        Where it is, metres.
+    heading : float
+        Where it looks, radians.
+    step : float
+        Seconds.
+    """
+    from discretize.raycast import seen_from
+
+    seen = seen_from(grid, eye, points, sensor.range)
+    if sensor.field_of_view < math.tau:
+        way = points - eye
+        off = np.arctan2(way[:, 1], way[:, 0]) - heading
+        seen &= (np.abs(np.arctan2(np.sin(off), np.cos(off))) <= sensor.field_of_view / 2) | ~way.any(axis=1)
+    return np.where(seen, math.exp(-sensor.attention * step), 1.0)
 
 
 class Lookout:

@@ -64,6 +64,11 @@ def test_the_belief_needs_a_speed(house: CellMap) -> None:
         believed_problem(house, Team(believes="places"), UniformMotion(), 1.0)
 
 
+def test_robots_do_not_plan_on_particles(house: CellMap) -> None:
+    with pytest.raises(GeomsimError, match="particles"):
+        believed_problem(house, Team(believes="particles"), AreaSpeedDegree(1.0), 1.0)
+
+
 def test_who_stands_is_not_believed_to_move(house: CellMap) -> None:
     _, problem = believed_problem(house, Team(believes="places"), StationaryMotion(), 1.0)
     assert (problem.motion.matrix(problem.graph, 1.0).diagonal() == 1).all()

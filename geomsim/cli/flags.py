@@ -99,7 +99,7 @@ class ScenarioFlags(PlanFlags):
         sight]
     belief
         What the robots believe in: cells, in which of them the evader is, or places, where on the routes between
-        checkpoints it is, which is true of what they see. [default: cells]
+        checkpoints it is, which is true of what they see; particles for `geomsim predict`. [default: cells]
     belief_capture
         What the belief counts on: cell, catching whoever is in the same cell, or sight, whoever is seen. [default:
         cell]

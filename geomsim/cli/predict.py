@@ -63,7 +63,7 @@ def predict(
         say_json(told)
         return 0
     model = "by sight of parts of cells" if result.capture == "sight" else "in the cell model"
-    how = "by sight" if result.belief == "places" else model
+    how = model if result.belief == "cells" else f"by sight, with a belief over {result.belief}"
     say(f"{result.name}: expected capture after {told['expected_time']:.2f} {result.unit}, {how}")
     if len(result.predictions) > 1:
         best, worst = (told["per_start"][int(k)] for k in (times.argmin(), times.argmax()))
