@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from discretize.wallgrid import WallGrid
 
-__all__ = ["blocking_wall", "blocks", "compiled", "free_line", "grid_arrays", "seen_among", "seen_from", "seen_pairs"]
+__all__ = ["blocking_wall", "blocks", "compiled", "free_line", "seen_among", "seen_from", "seen_pairs"]
 
 #: pairs of an eye and a target that are looked at in one go: a megabyte or so
 _CHUNK = 1_000_000
@@ -29,12 +29,13 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @compiled
-def blocks(px, py, qx, qy, ax, ay, bx, by):  # type: ignore[no-untyped-def]
-    """Whether the wall from p to q is between a and b.
+def blocks(walls, w, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+    """Whether wall ``w``, from p to q, is between a and b.
 
     A ray that touches the end of a wall is blocked; one that only ends on a wall, or runs along one, is not. These
     are the rules of pymunk's segment queries.
     """
+    px, py, qx, qy = walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3]
     dx, dy = bx - ax, by - ay
     p = dx * (py - ay) - dy * (px - ax)
     q = dx * (qy - ay) - dy * (qx - ax)
@@ -47,8 +48,9 @@ def blocks(px, py, qx, qy, ax, ay, bx, by):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def blocking_wall(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+def blocking_wall(grid, ax, ay, bx, by):  # type: ignore[no-untyped-def]
     """Return a wall that is between a and b, or -1; squares are visited in the order in which the ray goes on."""
+    size, columns, rows, (x0, y0) = grid.size, grid.columns, grid.rows, grid.origin
     dx, dy = bx - ax, by - ay
     i = min(max(math.floor((ax - x0) / size), 0), columns - 1)
     j = min(max(math.floor((ay - y0) / size), 0), rows - 1)
@@ -66,9 +68,9 @@ def blocking_wall(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx
         leave_y = (y0 + (j + (1 if dy > 0 else 0)) * size - ay) / dy
     for _ in range(abs(last_i - i) + abs(last_j - j) + 1):
         square = j * columns + i
-        for m in range(first[square], first[square + 1]):
-            w = members[m]
-            if blocks(walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], ax, ay, bx, by):
+        for m in range(grid.first[square], grid.first[square + 1]):
+            w = grid.members[m]
+            if blocks(grid.walls, w, ax, ay, bx, by):
                 return w
         if j == last_j or (i != last_i and leave_x < leave_y):
             i += step_i
@@ -80,38 +82,31 @@ def blocking_wall(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx
 
 
 @compiled
-def free_line(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by):  # type: ignore[no-untyped-def]
+def free_line(grid, ax, ay, bx, by):  # type: ignore[no-untyped-def]
     """Whether no wall is between a and b."""
-    return blocking_wall(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by) < 0
+    return blocking_wall(grid, ax, ay, bx, by) < 0
 
 
 @compiled
-def _pairs(walls, first, members, x0, y0, size, columns, rows, a, b):  # type: ignore[no-untyped-def]
+def _pairs(grid, a, b):  # type: ignore[no-untyped-def]
     seen = np.empty(len(a), dtype=np.bool_)
     for k in range(len(a)):
-        seen[k] = free_line(walls, first, members, x0, y0, size, columns, rows, a[k, 0], a[k, 1], b[k, 0], b[k, 1])
+        seen[k] = free_line(grid, a[k, 0], a[k, 1], b[k, 0], b[k, 1])
     return seen
 
 
 @compiled
-def _rows(walls, first, members, x0, y0, size, columns, rows, eyes, targets, reach, seen):  # type: ignore[no-untyped-def]
+def _rows(grid, eyes, targets, reach, seen):  # type: ignore[no-untyped-def]
     for i in range(len(eyes)):
         ax, ay = eyes[i, 0], eyes[i, 1]
         for k in range(len(targets)):
             bx, by = targets[k, 0], targets[k, 1]
-            seen[i, k] = math.hypot(bx - ax, by - ay) <= reach and free_line(
-                walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by
-            )
-
-
-def grid_arrays(grid: WallGrid) -> tuple[object, ...]:
-    """Return the walls in the form in which compiled functions take them: their first eight arguments."""
-    return grid.walls, grid.first, grid.members, *grid.origin, grid.size, grid.columns, grid.rows
+            seen[i, k] = math.hypot(bx - ax, by - ay) <= reach and free_line(grid, ax, ay, bx, by)
 
 
 def seen_pairs(grid: WallGrid, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return whether no wall is between ``a[k]`` and ``b[k]``, both of shape (K, 2), metres."""
-    return cast(NDArray[np.bool_], _pairs(*grid_arrays(grid), np.asarray(a, np.float64), np.asarray(b, np.float64)))
+    return cast(NDArray[np.bool_], _pairs(grid, np.asarray(a, np.float64), np.asarray(b, np.float64)))
 
 
 def seen_from(
@@ -119,7 +114,7 @@ def seen_from(
 ) -> NDArray[np.bool_]:
     """Return whether one eye, shape (2,), sees each target, shape (N, 2), at most ``reach`` metres away."""
     seen = np.empty((1, len(targets)), dtype=np.bool_)
-    _rows(*grid_arrays(grid), np.asarray(eye, np.float64)[np.newaxis], targets, reach, seen)
+    _rows(grid, np.asarray(eye, np.float64)[np.newaxis], targets, reach, seen)
     return cast(NDArray[np.bool_], seen[0])
 
 
@@ -144,12 +139,12 @@ def seen_among(
     indices : ndarray of int32
         Targets in sight, in rising order, eye after eye.
     """
-    walls, (k, n) = grid_arrays(grid), (len(eyes), len(targets))
+    k, n = len(eyes), len(targets)
     size = max(1, min(64, _CHUNK // max(1, n)))
 
     def look(begin: int) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
         seen = np.empty((min(size, k - begin), n), dtype=np.bool_)
-        _rows(*walls, eyes[begin : begin + size], targets, reach, seen)
+        _rows(grid, eyes[begin : begin + size], targets, reach, seen)
         return seen.sum(axis=1), np.nonzero(seen)[1].astype(np.int32)
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:

@@ -16,7 +16,7 @@ from maps import FloorPlan
 
 __all__ = ["visibility_cells", "visibility_count", "visibility_rays"]
 
-_LARGEST = 20_000
+_LARGEST = 50_000
 """Most cells that are made."""
 
 _PAIRS = 1_000_000
@@ -46,7 +46,7 @@ def visibility_cells(plan: FloorPlan) -> list[shapely.Polygon]:
 
 
 def visibility_count(plan: FloorPlan) -> int:
-    """Count conservative visibility cells: exactly up to 20,000, beyond that from how often a sample of rays cross.
+    """Count conservative visibility cells: exactly up to 50,000, beyond that from how often a sample of rays cross.
 
     Parameters
     ----------

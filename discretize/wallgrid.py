@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -16,9 +16,8 @@ _MARGIN = 1e-6
 _MOST_SQUARES = 512
 
 
-@dataclass(frozen=True, slots=True)
-class WallGrid:
-    """W wall segments, and for every square of a grid those in it.
+class WallGrid(NamedTuple):
+    """W wall segments, and for every square of a grid those in it; a tuple, so that compiled functions take it.
 
     Attributes
     ----------

@@ -105,6 +105,7 @@ class Chase:
         self.quarry = Quarry(cells.plan.walls, Routes(cells), evader, hideouts, chance)
         self.patience = theirs.noticing.exponential(size=(evader.count, team.pursuers))
         self.looked = np.zeros_like(self.patience)
+        self.measuring = theirs.measuring
         self.captures: list[Capture] = []
         self.held_up: set[int] = set()
         self.log = _Log()
@@ -126,7 +127,7 @@ class Chase:
                 time = round((k + 1) * dt, 6)  # 0.3, not 0.30000000000000004
                 self._note(time)
                 if (k + 1) % self.timing.steps_per_belief == 0:
-                    self.work.learn()
+                    self.work.learn(self._ranges())
                     self._believe(time)
                     if progress is not None:
                         progress(time, float(self.work.beliefs[0, 0]))
@@ -152,6 +153,15 @@ class Chase:
         self.log.beliefs.append(self.work.beliefs[0])
         self.log.own_beliefs.append(self.work.own_beliefs(0))
         self.log.belief_times.append(time)
+
+    def _ranges(self) -> NDArray[np.float64] | None:
+        """Measure the distance of every evader that is free from every robot, shape (P, E), metres; NaN of others."""
+        noise = self.team.range_noise
+        if noise is None:
+            return None
+        away = self.work.positions[0][:, np.newaxis] - self.quarry.positions
+        read = np.hypot(away[..., 0], away[..., 1]) + noise * self.measuring.standard_normal(away.shape[:2])
+        return np.where(self.work.crews[0].free, read, np.nan)
 
     def _look(self, time: float) -> None:
         """Let the robots look at every evader that is free; all are told of a capture."""

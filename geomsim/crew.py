@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,11 @@ from planners import (
     SearchState,
     advance,
     merge_evaders,
+    observe,
 )
+
+if TYPE_CHECKING:
+    from planners.motion import Sparse
 
 __all__ = ["Crew"]
 
@@ -40,15 +45,31 @@ class _Mind:
     when: NDArray[np.float64]
 
 
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """What P robots saw and measured at one belief step; arrays as for :meth:`Crew.learn`."""
+
+    rows: NDArray[np.float64]
+    likelihoods: NDArray[np.float64] | None
+
+    def carry(self, beliefs: NDArray[np.float64], transition: Sparse, known: NDArray[np.bool_]) -> NDArray[np.float64]:
+        """Return the beliefs, shape (E, S + 1), a step later, by what some robots saw and measured."""
+        after = advance(beliefs, transition, self.rows[known])
+        if self.likelihoods is None:
+            return after
+        together = self.likelihoods[known].prod(axis=0)
+        return np.array([observe(one, chance) for one, chance in zip(after, together, strict=True)])
+
+
 class Crew:
     """P robots that search for E evaders, as one mind or as P minds.
 
-    Every look of a robot is an entry in its log. Robots in contact exchange their logs, with what they heard from
-    others before; a belief is made anew from the first step at which something new was learned (Eq. 3 with the looks
-    that are known). So a merged belief is exactly that of a robot that had heard everything as it happened: nothing
-    is counted twice, by whichever way it came. A robot that is not heard is taken to end the hop it was on and to
-    stand there. With full contact every mind is asked the same questions in the same order, with chance from the same
-    seed: so all decide as one planner would.
+    Every look and measurement of a robot is an entry in its log. Robots in contact exchange their logs, with what they
+    heard from others before; a belief is made anew from the first step at which something new was learned (Eq. 3 with
+    the looks that are known). So a merged belief is exactly that of a robot that had heard everything as it happened:
+    nothing is counted twice, by whichever way it came. A robot that is not heard is taken to end the hop it was on and
+    to stand there. With full contact every mind is asked the same questions in the same order, with chance from the
+    same seed: so all decide as one planner would.
 
     Parameters
     ----------
@@ -88,7 +109,7 @@ class Crew:
     ) -> None:
         team = len(starts)
         self._transition = problem.motion.matrix(problem.graph, problem.time_step)
-        self._log: list[NDArray[np.float64]] = []
+        self._log: list[_Entry] = []
         self.pooled = np.tile(belief, (evaders, 1))
         self.free = np.ones(evaders, dtype=np.bool_)
         self.central = central
@@ -116,8 +137,13 @@ class Crew:
         minds = [] if self.central else self._minds
         return np.array([self._merged(m.beliefs[-1]) for m in minds]).reshape(len(minds), self.pooled.shape[1])
 
-    def learn(self, rows: NDArray[np.float64], contacts: NDArray[np.bool_]) -> None:
-        """Take a belief step: dispersion, then the looks that are known (Eq. 3).
+    def learn(
+        self,
+        rows: NDArray[np.float64],
+        contacts: NDArray[np.bool_],
+        likelihoods: NDArray[np.float64] | None = None,
+    ) -> None:
+        """Take a belief step: dispersion, then the looks and measurements that are known (Eq. 3 and the matrix M).
 
         Parameters
         ----------
@@ -125,9 +151,11 @@ class Crew:
             Detection probability of each state for each robot from where it is.
         contacts : ndarray of bool, shape (P, P)
             Who hears whom now.
+        likelihoods : ndarray, shape (P, E, S), optional
+            Of what each robot measured of each evader, for every state in which that may be; ones for no measurement.
         """
-        self._log.append(rows)
-        self.pooled = advance(self.pooled, self._transition, rows)
+        self._log.append(_Entry(rows, likelihoods))
+        self.pooled = self._log[-1].carry(self.pooled, self._transition, np.ones(len(rows), dtype=np.bool_))
         if self.central:
             self._minds[0].beliefs[:] = [self.pooled]
             return
@@ -184,8 +212,7 @@ class Crew:
         mind.heard = heard
         del mind.beliefs[begin + 1 :]
         for step in range(begin, len(self._log)):
-            rows = self._log[step][heard > step]
-            mind.beliefs.append(advance(mind.beliefs[-1], self._transition, rows))
+            mind.beliefs.append(self._log[step].carry(mind.beliefs[-1], self._transition, heard > step))
 
 
 def _since(last: PursuerState, elapsed: float) -> PursuerState:

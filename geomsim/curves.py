@@ -22,7 +22,7 @@ def mean_time(free: NDArray[np.float64], step: float, limit: float) -> float:
     limit : float
         Seconds.
     """
-    free = free[: max(1, math.ceil(limit / step - 1e-9) + 1)]
+    free = free[: max(1, math.ceil(min(float(len(free)), limit / step + 1.0) - 1e-9))]
     seen, left, rate = float(free[:-1].sum()) * step, max(0.0, limit - (len(free) - 1) * step), _rate(free) / step
     return seen + float(free[-1]) * (-math.expm1(-rate * left) / rate if rate > 0 else left)
 

@@ -86,6 +86,8 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
     scenario = read_scenario(path, keys)
     asked = scenario.capture if "capture" in scenario.model_fields_set else "cell"
     capture = "sight" if "sight" in (asked, scenario.belief_capture) else "cell"
+    if scenario.range_noise is not None:
+        raise GeomsimError("What ranges robots will measure cannot be predicted: leave out range_noise.")
     if asked == "sight" and not is_edge_list(scenario.plan):
         return _by_sight(scenario, everywhere=everywhere)
     if is_edge_list(scenario.plan):

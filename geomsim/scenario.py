@@ -82,6 +82,7 @@ class Scenario(BaseModel):
     fov_degrees: _Degrees | tuple[_Degrees, ...] = 360.0
     detection: _Share | tuple[_Share, ...] = 1.0
     speed: _Positive | tuple[_Positive, ...] = 1.0
+    range_noise: _Positive | None = None
     radius: _Positive = 0.2
     evaders: Annotated[int, Field(ge=1, le=100)] = 1
     evader: str = "centroid-boundary"
@@ -140,6 +141,7 @@ class Scenario(BaseModel):
             communication=Communication(self.communication, self.communication_range or math.inf),
             checkpoints=self.checkpoints,
             believes=self.belief_capture if self.belief == "cells" else self.belief,
+            range_noise=self.range_noise,
         )
 
     def _sensors(self) -> Sensor | tuple[Sensor, ...]:
@@ -286,6 +288,7 @@ def describe(
         "fov_degrees": _each([math.degrees(sensor.field_of_view) for sensor in team.sensors]),
         "detection": _each([sensor.detection for sensor in team.sensors]),
         "speed": _each(team.speeds),
+        "range_noise": team.range_noise,
         "radius": team.radius,
         "evaders": evader.count,
         "evader": kinds.get(type(evader.model), type(evader.model).__name__),

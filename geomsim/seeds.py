@@ -45,6 +45,11 @@ class Streams:
         """How long robots look at the evader before they notice it."""
         return self._stream(3)
 
+    @property
+    def measuring(self) -> np.random.Generator:
+        """The noise of measurements."""
+        return self._stream(4)
+
     def _stream(self, *number: int) -> np.random.Generator:
         return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=number))
 

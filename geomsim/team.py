@@ -55,6 +55,9 @@ class Team:
     believes : {"cell", "sight", "places", "particles"}
         What they count on to catch, see ``BELIEVED_CAPTURES``; or that they believe in places or particles, see
         ``BELIEFS``.
+    range_noise : float or None
+        Standard deviation of the distance to each evader that every robot measures at each belief step, also through
+        walls, metres; None if they measure none.
 
     Raises
     ------
@@ -71,6 +74,7 @@ class Team:
     communication: Communication = field(default_factory=Communication)
     checkpoints: str = "centroids"
     believes: str = "cell"
+    range_noise: float | None = None
 
     def __post_init__(self) -> None:
         if self.pursuers < 1:
@@ -82,6 +86,8 @@ class Team:
                 )
         for speed in self.speeds:
             _check_body("pursuer", speed, self.radius)
+        if self.range_noise is not None and not 0 < self.range_noise < float("inf"):
+            raise GeomsimError(f"The noise of ranges must be positive and finite, but is {self.range_noise:g} m.")
         for what, name, known in (
             ("kind of checkpoints", self.checkpoints, CHECKPOINTS),
             ("believed capture", self.believes, (*BELIEVED_CAPTURES, "places", "particles")),

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from discretize import CellMap
 from geomsim.believing import believed_problem
 from geomsim.crew import Crew
+from geomsim.measuring import RangeReadings
 from geomsim.team import Team
 from geomsim.walking import Routes, Walkers
 from geomsim.world import World
@@ -104,6 +105,7 @@ class Teamwork:
         self.headings = np.zeros(self._shape)
         self._stays = speeds * belief_step
         self._looks = _Looks(self._problem.captures, self.routes, speeds)
+        self._readings = RangeReadings.of(cells, self._problem, team.range_noise or 0.0)
         belief = self._problem.first_belief(starts, int(roads.graph.component[starts[0]]))
         self.crews = [
             Crew(
@@ -158,12 +160,19 @@ class Teamwork:
         course = np.where(np.hypot(vx, vy) > 1e-3, np.arctan2(vy, vx), self.headings.reshape(-1))
         self.headings = course.reshape(self._shape)
 
-    def learn(self) -> None:
-        """Take a belief step: dispersion, then capture where the pursuers are (Eq. 3)."""
+    def learn(self, ranges: NDArray[np.float64] | None = None) -> None:
+        """Take a belief step: dispersion, then capture where the pursuers are (Eq. 3), then what they measured.
+
+        Parameters
+        ----------
+        ranges : ndarray, shape (P, E), optional
+            Distance of each evader from each pursuer of the only run, as measured, metres; NaN where none was.
+        """
         for run, crew in enumerate(self.crews):
             mine = range(run * self.team.pursuers, (run + 1) * self.team.pursuers)
             rows = np.array([self._looks.row(i, k, self._walkers) for i, k in enumerate(mine)])
-            crew.learn(rows, self._contacts(run))
+            likelihoods = None if ranges is None else self._readings.likelihoods(self.positions[run], ranges)
+            crew.learn(rows, self._contacts(run), likelihoods)
 
     def _contacts(self, run: int) -> NDArray[np.bool_]:
         return self.team.communication.contacts(self._world, self.positions[run])

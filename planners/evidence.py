@@ -71,7 +71,7 @@ def observe(belief: NDArray[np.float64], likelihood: ArrayLike) -> NDArray[np.fl
     return np.concatenate([[belief[0]], weighed * ((1.0 - belief[0]) / total)])
 
 
-def measured_range(distances: ArrayLike, measured: float, deviation: float) -> NDArray[np.float64]:
+def measured_range(distances: ArrayLike, measured: float, deviation: ArrayLike) -> NDArray[np.float64]:
     """Return the likelihood, shape (N,), of a range to the evader with Gaussian noise.
 
     Parameters
@@ -80,20 +80,22 @@ def measured_range(distances: ArrayLike, measured: float, deviation: float) -> N
         True range for an evader in each state, metres.
     measured : float
         What was measured, metres.
-    deviation : float
+    deviation : float or array_like, shape (N,)
         Standard deviation of the noise, metres; above 0. For a state as large as a cell it should include the spread
-        of places in the cell.
+        of places in the cell, and may be another for each.
 
     Raises
     ------
     EvidenceError
-        If the deviation is not above 0.
+        If a deviation is not above 0.
     """
-    if not deviation > 0:
-        raise EvidenceError(f"The deviation of a range must be above 0; got {deviation}.")
-    error = (np.asarray(distances, dtype=np.float64) - measured) / deviation
+    spread = np.asarray(deviation, dtype=np.float64)
+    for value in spread[~(spread > 0)][:1]:
+        raise EvidenceError(f"The deviation of a range must be above 0; got {value}.")
+    error = (np.asarray(distances, dtype=np.float64) - measured) / spread
+    log = -0.5 * error**2 - np.log(spread)
     # Divided by the largest value, which cancels in Bayes' rule, so that far outliers do not become 0 everywhere.
-    return np.asarray(np.exp(-0.5 * (error**2 - (error**2).min())))
+    return np.asarray(np.exp(log - log.max()))
 
 
 def reported_sighting(states: int, where: Iterable[int], hit: float, false: float) -> NDArray[np.float64]:

@@ -28,7 +28,8 @@ class Sequential:
 
     Sequential allocation (Hollinger et al. 2009); since what a path adds can only shrink as paths are added, the
     team gets at least half of what the best joint plan would. Each pursuer's path is the best one, by branch and
-    bound, see :class:`planners.branching.JointSearch`.
+    bound, see :class:`planners.branching.JointSearch`; where states are parts of cells, of which there are too many for
+    that, it is found by beam search (:class:`planners.pathbeam.PathBeam`).
 
     Attributes
     ----------
@@ -55,7 +56,9 @@ class Sequential:
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
         """Prepare a policy; nothing in it is random."""
-        search = JointSearch(SearchModel(problem), horizon=self.horizon, discount=self.discount)
+        model = SearchModel(problem)
+        beam = PathBeam(model, horizon=self.horizon, discount=self.discount, width=_WIDTH)
+        search = JointSearch(model, horizon=self.horizon, discount=self.discount) if problem.space is None else None
 
         def allocate(
             belief: NDArray[np.float64],
@@ -63,9 +66,11 @@ class Sequential:
             done: Sequence[int],
             announced: Sequence[Sequence[int]],  # noqa: ARG001  (every plan starts from nothing)
         ) -> Sequence[Sequence[int]]:
+            if search is None:
+                return beam.respond(belief, moves, done, (), rounds=0)
             return respond(search, belief, moves, done, (), rounds=0)
 
-        return TeamPolicy(search.model, allocate, self.patience)
+        return TeamPolicy(model, allocate, self.patience)
 
 
 @dataclass(frozen=True, slots=True)

@@ -438,7 +438,7 @@ def test_help_tells_defaults(key: str) -> None:
     doc = " ".join(docs.split(f"\n{key}\n", 1)[1].split())
     default = Scenario.model_fields[key].default
     words = {"start": "the plan's own", "range": "without limit", "evader_start": "a random one"}
-    words |= {"communication_range": "without limit"}
+    words |= {"communication_range": "without limit", "range_noise": "they measure nothing"}
     words |= {"level": "the largest", "structure": "if it is plainly a scan"}
     words |= {"motion_speed": "as fast as it is", "clearance": "the largest radius"}
     words |= {"cost": Decoupled().cost, "depth": str(Decoupled().depth)}

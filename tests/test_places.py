@@ -22,6 +22,7 @@ from planners import (
     Decoupled,
     Planner,
     Rollout,
+    Sequential,
     StationaryMotion,
     UniformMotion,
     check_transition,
@@ -33,6 +34,7 @@ PLANNERS = [
     Decoupled("distance-over-probability", 1),
     Coupled("target-probability", 1),
     BestResponse(horizon=12),
+    Sequential(horizon=12),
     Beam(width=10, horizon=20),
     Rollout((Decoupled(depth=1), Decoupled("probability", 1)), horizon=60),
 ]
@@ -79,7 +81,7 @@ def test_who_stands_is_not_believed_to_move(house: CellMap) -> None:
     [
         ("decoupled-entropy-3-places", "decoupled-entropy-3-places"),
         ("decoupled-places", "decoupled-entropy-5-places"),
-        ("best-response-places", "best-response-40-places"),
+        ("best-response-places", "best-response-60-places"),
         ("best-response-12-places", "best-response-12-places"),
         ("random-places", "random-places"),
     ],

@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 
 from discretize.partition import Partition
+from discretize.rooms.bends import diagonals
 from discretize.rooms.candidates import candidate_cuts
 from discretize.rooms.faces import GRID, arrangement
 from discretize.rooms.fitting import fit
@@ -49,6 +50,9 @@ def room_cells(
     doors = np.array([shapely.get_coordinates(door)[[0, -1]] for door in lines]).reshape(-1, 2, 2)
     cuts, doorways = candidate_cuts(space, doors, allowed, 2 * radius)
     faces = arrangement(space, cuts, doorways, doors)
+    bends = diagonals(faces.polygons, 1 - allowed)
+    if len(bends):
+        faces = arrangement(space, np.concatenate([cuts, bends]), doorways, doors)
     chosen, notes = best_partition(faces, limits, rng)
     owner = np.empty(len(faces), dtype=np.intp)
     for k, region in enumerate(chosen):

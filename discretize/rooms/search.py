@@ -16,7 +16,7 @@ __all__ = ["best_partition", "mutual_sight"]
 
 RUNS = 12  # randomised merges of a plan of ordinary size
 EFFORT = 15_000  # faces times merges; larger plans get fewer merges
-MANY = 10_000  # faces; a plan with more is not improved any further
+MANY = 10_000  # faces; a plan with more is merged once and not improved any further
 SHARES = (0.0, 0.2, 0.2, 0.4, 0.4)  # of the cells that are broken before the merges that improve a partition
 ROUNDS = 3
 CONVEX, SIGHT, OPEN = 1.0, 2.0, 0.15  # weights in the cost of a cell, beside 1 for being one
@@ -42,7 +42,7 @@ def best_partition(faces: Faces, limits: Limits, rng: np.random.Generator) -> tu
         What was done less thoroughly than usual.
     """
     regions = Regions(faces, limits)
-    runs = int(np.clip(EFFORT // max(len(faces), 1), 2, RUNS))
+    runs = int(np.clip(EFFORT // max(len(faces), 1), 2 if len(faces) <= MANY else 1, RUNS))
     for k in range(runs):
         regions.merge(regions.single, rng, 0.0 if k == 0 else 0.05 * (1 + k % 4))
     sound = _sees_itself(faces, limits.sight)
@@ -61,7 +61,8 @@ def best_partition(faces: Faces, limits: Limits, rng: np.random.Generator) -> tu
         chosen = partition(list(regions.pool.values()), len(faces), _cost, sound)
     if runs == RUNS:
         return chosen, ()
-    return chosen, (f"{runs} randomised merges instead of {RUNS}, because the plan falls into {len(faces)} faces.",)
+    told = f"{runs} randomised merge{'s' * (runs > 1)} instead of {RUNS}"
+    return chosen, (f"{told}, because the plan falls into {len(faces)} faces.",)
 
 
 def _cost(region: Region) -> float:

@@ -74,7 +74,8 @@ def _result(cells: CellMap, report: CellReport, certificate: Certificate, second
         "coverage": report.coverage,
         "overlap": report.overlap,
         "convexity": report.convexity,
-        "tolerance": report.tolerance,
+        "tolerance": report.tolerance if report.tolerance < 1 else None,
+        "strict": cells.strict,
         "free_components": report.free_components,
         "graph_components": report.graph_components,
         "pockets": list(report.pockets),
@@ -96,7 +97,7 @@ def _tell(told: dict[str, Any], radius: float) -> None:
     size = f"{told['cells']} cells, {told['portals']} portals, {told['area']:.1f} m2"
     say(f"{told['plan']}: {size}, {told['seconds']:.2f} s")
     say(f"covered {told['coverage']:.9f}, overlap {told['overlap']:.1e}")
-    say(f"area of a cell over its convex hull's: at least {told['convexity']:.6f}{_promise(told['tolerance'])}")
+    say(f"area of a cell over its convex hull's: at least {told['convexity']:.6f}{_promise(told)}")
     say(f"connected parts of the free space: {told['free_components']}, of the cell graph: {told['graph_components']}")
     bounds = told["certificate"]
     at_least = max(bounds["reflex_bound"], bounds["hidden_bound"])
@@ -112,8 +113,9 @@ def _tell(told: dict[str, Any], radius: float) -> None:
         say(f"{kind + ':':<10} {path}")
 
 
-def _promise(tolerance: float) -> str:
+def _promise(told: dict[str, Any]) -> str:
     """Words for how nearly convex cells should be."""
-    if tolerance == 1:
+    if told["tolerance"] is None:
         return ""
-    return f" (tolerance {tolerance:g}, small obstacles and what is too narrow for the robot left out)"
+    judged = "" if told["strict"] else ", small obstacles and what is too narrow for the robot left out"
+    return f" (tolerance {told['tolerance']:g}{judged})"

@@ -96,6 +96,12 @@ class DrawFlags:
         self._times()
         self._style()
 
+    def check_beliefs(self, robots: int) -> None:
+        """Refuse to draw the own belief of a robot that will have none, of so many that have."""
+        if self.belief_of is not None and not 1 <= self.belief_of <= robots:
+            known = f"robots are numbered from 1 to {robots}" if robots else "one planner plans for all robots"
+            raise GeomsimError(f"--belief-of {self.belief_of} asks for what no robot believes: {known}.")
+
     def draw(self, episode: Episode, folder: Path, files: dict[str, Path]) -> None:
         """Draw an episode into a folder; each file finished is entered into ``files``."""
         options: dict[str, Any] = {key: getattr(self, key) for key in ("fps", "speedup") if getattr(self, key)}

@@ -112,6 +112,9 @@ class ScenarioFlags(PlanFlags):
         [default: 1]
     speed
         Speed of the robots, metres a second; one for all or one each. [default: 1]
+    range_noise
+        Let every robot measure how far each evader is, every belief step and through walls, with Gaussian noise of
+        this standard deviation, metres. [default: they measure nothing]
     radius
         Radius of the robots, metres. [default: 0.2]
     evaders
@@ -161,6 +164,7 @@ class ScenarioFlags(PlanFlags):
     fov_degrees: str | None = None
     detection: str | None = None
     speed: str | None = None
+    range_noise: float | None = None
     radius: float | None = None
     evaders: WholeNumber = None
     evader: str | None = None

@@ -42,6 +42,7 @@ def run(
     drawing.check()
     told = read_scenario(scenario, flags.given() | ({} if plan is None else {"plan": plan}))
     team, quarry, timing, motion = told.team(), told.quarry(), told.timing(), told.belief_motion()
+    drawing.check_beliefs(0 if team.communication.central else team.pursuers)
     place, cells = told.place()
     told = told.model_copy(update={"start": tuple(cell + 1 for cell in place_team(cells, team))})
     with results_folder(out or default_folder(place.name, str(told.seed))) as folder:

@@ -7,7 +7,7 @@ before the capture. Where an evader reacts, every trial gets a world of its own.
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
@@ -108,19 +108,13 @@ def run_trials(
     begun = clock.perf_counter()
     team, evader, timing = team or Team(), evader or Evader(), timing or Timing(limit=10_000.0)
     made = make_methods(methods)
-    names = [method.name for method in made]
-    for what, count in (("trial", trials), ("team run", team_runs)):
-        if count < 1:
-            raise GeomsimError(f"There must be at least one {what}, but {count} were asked for.")
-    if reference is not None and reference not in names:
-        raise GeomsimError(f"The reference {reference!r} is none of the methods: {nearest(reference, names)}")
-    chosen = _engine(engine, evader)
+    _check_request([method.name for method in made], trials, team_runs, reference)
+    chosen = _engine(engine, team, evader)
     if cells is None:
         from discretize import convex_cells
 
         cells = convex_cells(plan, radius=max(team.radius, evader.radius))
     check_pursuit(cells, team, evader, capture)
-    reacts = _reason(evader) is not None
     experiment = Experiment(
         cells=cells,
         methods=made,
@@ -130,7 +124,7 @@ def run_trials(
         motion=motion or AreaSpeedDegree(evader.speed),
         timing=timing,
         trials=trials,
-        team_runs=trials if reacts else min(team_runs, trials),
+        team_runs=min(team_runs, trials) if _reason(team, evader) is None else trials,
         seed=seed,
     )
     _check_start(experiment)
@@ -144,7 +138,7 @@ def run_trials(
         experiment=experiment,
         rows=tuple(rows),
         runs=work.method_runs(),
-        reference=reference or names[0],
+        reference=reference or made[0].name,
         engine=chosen,
         wall_crossings=work.crossings,
         wall_seconds=clock.perf_counter() - begun,
@@ -153,10 +147,18 @@ def run_trials(
     )
 
 
-def _engine(asked: str, evader: Evader) -> str:
+def _check_request(names: Sequence[str], trials: int, team_runs: int, reference: str | None) -> None:
+    for what, count in (("trial", trials), ("team run", team_runs)):
+        if count < 1:
+            raise GeomsimError(f"There must be at least one {what}, but {count} were asked for.")
+    if reference is not None and reference not in names:
+        raise GeomsimError(f"The reference {reference!r} is none of the methods: {nearest(reference, names)}")
+
+
+def _engine(asked: str, team: Team, evader: Evader) -> str:
     if asked not in ENGINES:
         raise GeomsimError(f"There is no engine {asked!r}: {nearest(asked, ENGINES)}")
-    reason = _reason(evader)
+    reason = _reason(team, evader)
     if reason is None:
         return "shared" if asked == "auto" else asked
     if asked == "shared":
@@ -166,8 +168,10 @@ def _engine(asked: str, evader: Evader) -> str:
     return "separate"
 
 
-def _reason(evader: Evader) -> str | None:
+def _reason(team: Team, evader: Evader) -> str | None:
     """Return why trials cannot share runs of the team, if they cannot."""
+    if team.range_noise is not None:
+        return "A team that measures ranges goes where its evader leads it"
     if getattr(evader.model, "reacts", False):
         return f"An evader of the kind {type(evader.model).__name__} reacts to robots"
     if evader.count > 1:

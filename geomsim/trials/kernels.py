@@ -13,50 +13,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from discretize import WallGrid
-from discretize.raycast import blocking_wall, blocks, compiled, free_line, grid_arrays
+from discretize.raycast import blocking_wall, blocks, compiled, free_line
 
 __all__ = ["Looked", "Lookers", "blocked_moves", "first_looks", "first_meetings"]
 
 
 @compiled
-def _blocked(walls, first, members, x0, y0, size, columns, rows, track):  # type: ignore[no-untyped-def]
+def _blocked(grid, track):  # type: ignore[no-untyped-def]
+    size, (x0, y0) = grid.size, grid.origin
     count = 0
     for t in range(len(track) - 1):
         for k in range(track.shape[1]):
             ax, ay, bx, by = track[t, k, 0], track[t, k, 1], track[t + 1, k, 0], track[t + 1, k, 1]
             i, j = math.floor((ax - x0) / size), math.floor((ay - y0) / size)
             if i == math.floor((bx - x0) / size) and j == math.floor((by - y0) / size):
-                square = min(max(j, 0), rows - 1) * columns + min(max(i, 0), columns - 1)
-                if first[square] == first[square + 1]:
+                square = min(max(j, 0), grid.rows - 1) * grid.columns + min(max(i, 0), grid.columns - 1)
+                if grid.first[square] == grid.first[square + 1]:
                     continue  # most moves stay within a square that holds no wall
-            if (ax != bx or ay != by) and not free_line(
-                walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by
-            ):
+            if (ax != bx or ay != by) and not free_line(grid, ax, ay, bx, by):
                 count += 1
     return count
 
 
 @compiled
 def _looks(  # type: ignore[no-untyped-def]
-    walls,
-    first,
-    members,
-    x0,
-    y0,
-    size,
-    columns,
-    rows,
-    eyes,
-    headings,
-    reach,
-    half,
-    rates,
-    targets,
-    which,
-    patience,
-    looked,
-    when,
-    who,
+    grid, eyes, headings, reach, half, rates, targets, which, patience, looked, when, who
 ):
     free = which.copy()
     left = len(free)
@@ -79,9 +60,9 @@ def _looks(  # type: ignore[no-untyped-def]
                     if abs(off) > half[i]:
                         continue
                 w = hides[k, i]
-                if w >= 0 and blocks(walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], ax, ay, bx, by):
+                if w >= 0 and blocks(grid.walls, w, ax, ay, bx, by):
                     continue
-                hides[k, i] = blocking_wall(walls, first, members, x0, y0, size, columns, rows, ax, ay, bx, by)
+                hides[k, i] = blocking_wall(grid, ax, ay, bx, by)
                 if hides[k, i] < 0:
                     looked[k, i] += rates[i]
                     if looked[k, i] >= patience[k, i]:
@@ -122,7 +103,7 @@ def _meetings(occupied, rates, hidden, which, patience, looked, when, who):  # t
 
 def blocked_moves(grid: WallGrid, track: NDArray[Any]) -> int:
     """Count the moves that went through a wall, which must be none; ``track`` has shape (T, K, 2), metres."""
-    return int(_blocked(*grid_arrays(grid), track))
+    return int(_blocked(grid, track))
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,20 +173,8 @@ def first_looks(
         Index into T and into P; -1 for an evader that was not noticed or not looked for.
     """
     when, who = _none(targets.shape[1])
-    _looks(
-        *grid_arrays(grid),
-        eyes,
-        headings,
-        lookers.reach,
-        lookers.half,
-        lookers.rates,
-        targets,
-        which,
-        looked.patience,
-        looked.paid,
-        when,
-        who,
-    )
+    sharp = lookers.reach, lookers.half, lookers.rates
+    _looks(grid, eyes, headings, *sharp, targets, which, looked.patience, looked.paid, when, who)
     return when, who
 
 

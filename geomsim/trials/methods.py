@@ -45,7 +45,7 @@ def parse_method(name: str) -> Method:
     """
     if name.endswith(_ON_PLACES):
         rest = name.removesuffix(_ON_PLACES)
-        made = parse_method(_HORIZONS.get(rest, rest))
+        made = parse_method(rest + _FURTHER.get(rest, ""))
         return Method(made.name + _ON_PLACES, made.planner, "places")
     known = [p for p in PLANNERS if name == p or name.startswith(f"{p}-")]
     if not known:
@@ -98,13 +98,14 @@ def default_methods() -> tuple[str, ...]:
         if planner in PLANNERS:
             names += [f"{planner}-{cost}-{depth}" for cost in _FIGURE_5]
     later = [p for p in PLANNERS if p not in ("stationary", "random", "coupled", "decoupled")]
-    return (*names, *(parse_method(p).name for p in later))
+    return (*names, *(parse_method(p + _FURTHER.get(p, "")).name for p in later))
 
 
 _ON_PLACES = "-places"
 
-#: planners that look far ahead on places unless told otherwise: what is searched grows slowly there with the horizon
-_HORIZONS = {"best-response": "best-response-40"}
+#: planners over a fixed time whose own horizon is made for graphs with hops of one step: here it is in seconds, and a
+#: hop takes five to thirty
+_FURTHER = {"sequential": "-60", "best-response": "-60", "branch-and-bound": "-30"}
 
 _FIGURE_5 = ("distance-over-probability", "probability", "target-probability", "entropy")
 

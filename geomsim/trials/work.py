@@ -200,6 +200,8 @@ class Work:
     def notes(self) -> tuple[str, ...]:
         """Return what a person should know, a sentence each."""
         told = []
+        if self.experiment.team.range_noise is not None:
+            told.append("Predictions are those of the same team without its measurements of ranges.")
         for m, runs in self.runs.items():
             for run in runs.values():
                 told += [

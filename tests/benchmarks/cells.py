@@ -78,7 +78,7 @@ def reflex_vertices(plan: FloorPlan) -> int:
 
 def labelled_doors(entry: dict, cells: CellMap) -> tuple[int, int]:
     """Count the doors that a person marked and that have free space on both sides, and those that part two cells."""
-    file = ROOT / entry["file"].replace(".png", "_doors.yaml")
+    file = (ROOT / entry["file"]).with_name(Path(entry["file"]).stem + "_doors.yaml")
     if not file.exists():
         return 0, 0
     ends = np.array([[d["door_corner_pt_1"], d["door_corner_pt_2"]] for d in yaml.safe_load(file.read_text())])
@@ -200,10 +200,16 @@ def main() -> None:
         rows.append(row | {"set": "ipa furnished" if "_furnitures" in entry["id"] else entry["category"]})
         lines.append(line(row))
         print(lines[-1], *row["told"], flush=True)
+        store(given, rows, lines)
     for name in sorted({row["set"] for row in rows if "rooms" in row}):
         rows.append(summary([row for row in rows if row.get("set") == name and "rooms" in row], name))
         lines.append(line(rows[-1]))
         print(lines[-1])
+        store(given, rows, lines)
+
+
+def store(given: argparse.Namespace, rows: list[dict], lines: list[str]) -> None:
+    """Write the table as far as it goes."""
     given.out.mkdir(parents=True, exist_ok=True)
     (given.out / "cells.json").write_text(json.dumps({"method": given.method, "plans": rows}, indent=1) + "\n")
     (given.out / "cells.md").write_text("\n".join(f"| {text} |" for text in lines) + "\n")

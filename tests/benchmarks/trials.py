@@ -1,9 +1,10 @@
 """How fast trials are, as ratios within one run.
 
-    python tests/benchmarks/trials.py [--out trials.json] [--quick] [--only NAME,NAME]
+    python tests/benchmarks/trials.py [--out FILE] [--quick] [--only NAME,NAME]
 
-Prints a table and stores it. Times are of the processor, so that other work on the machine disturbs little; the two
-of a ratio are measured one after the other. The peers pyrvo and JuPedSim are measured if they are installed.
+Prints a table and stores it, beside this file unless told otherwise. Times are of the processor, so that other work on
+the machine disturbs little; the two of a ratio are measured one after the other. The peers pyrvo and JuPedSim are
+measured if they are installed.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ import numpy as np
 import pymunk
 
 from discretize import CellMap, WallGrid, convex_cells
-from discretize.raycast import free_line, grid_arrays
+from discretize.raycast import free_line
 from geomsim import Evader, Random, Sensor, Team, Timing
 from geomsim.trials.bank import Bank, meet
 from geomsim.trials.episodes import run_episodes
@@ -130,7 +131,6 @@ def own_space(told: Experiment, routes: Routes, trial: int, steps: int, stop: bo
 @numba.njit
 def _bare(grid, eyes, lines, marks, ends, ways, count, starts, steps, dice):
     """Trials without physics: points on polylines, the next one at random, and three rays a step."""
-    walls, first, members, x0, y0, size, columns, rows = grid
     seen, thrown = 0, 0
     for k in range(len(starts)):
         edge = ways[starts[k], dice[thrown % len(dice)] % count[starts[k]]]
@@ -151,9 +151,7 @@ def _bare(grid, eyes, lines, marks, ends, ways, count, starts, steps, dice):
             y = lines[edge, leg, 1] + share * (lines[edge, leg + 1, 1] - lines[edge, leg, 1])
             for i in range(3):
                 ex, ey = eyes[t, i, 0], eyes[t, i, 1]
-                if math.hypot(x - ex, y - ey) < np.inf and free_line(
-                    walls, first, members, x0, y0, size, columns, rows, ex, ey, x, y
-                ):
+                if math.hypot(x - ex, y - ey) < np.inf and free_line(grid, ex, ey, x, y):
                     seen += 1
     return seen
 
@@ -174,7 +172,7 @@ def bare(told: Experiment, run: TeamRun, steps: int) -> float:
         ways[i, routes.neighbours[i].index(j)] = e
     count = np.array([len(row) for row in routes.neighbours])
     ends, starts = np.array([j for _, j in pairs]), np.array(told.hideouts)
-    grid = grid_arrays(WallGrid.of(cells.plan.walls))
+    grid = WallGrid.of(cells.plan.walls)
     dice = np.random.default_rng(1).integers(0, 2**31, 1_000_000)
     rest = (run.eyes, lines, marks, ends, ways, count)
     _bare(grid, *rest, starts[:2], 5, dice)
@@ -309,25 +307,47 @@ def ten_methods(cells: CellMap, quick: bool) -> list[dict[str, Any]]:
 
 
 def figure_5(quick: bool) -> list[dict[str, Any]]:
-    """The whole of Fig. 5, planning and start-up included, by the wall clock."""
-    trials = 100 if quick else 1000
+    """The whole of Fig. 5, planning and start-up included, by the wall clock; memory of all its processes together."""
+    trials, most = 100 if quick else 1000, 0.0
     with tempfile.TemporaryDirectory() as folder:
         program = "from geomsim.cli import main; main()"
         argv = ["compare", "office", "--capture", "cell", "--trials", str(trials), "--json", "--out", f"{folder}/out"]
         begun, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run([sys.executable, "-c", program, *argv], check=True, capture_output=True)
+        with (Path(folder) / "told").open("w+") as told:
+            process = subprocess.Popen([sys.executable, "-c", program, *argv], stdout=told)
+            while process.poll() is None:
+                most = max(most, sum(map(proportional_set, family(process.pid))))
+                time.sleep(0.3)
+            told.seek(0)
+            methods = json.load(told)["methods"]
         wall, after = time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
-        told = json.loads(done.stdout)
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    largest = after.ru_maxrss / 2**20
     return [
         {
-            "what": f"Fig. 5, {trials} trials, {len(told['methods'])} methods",
+            "what": f"Fig. 5, {trials} trials, {len(methods)} methods",
             "wall_seconds": wall,
             "processor_seconds": cpu,
-            "largest_process_GiB": largest,
+            "memory_of_all_processes_GiB": most / 2**20,
         }
     ]
+
+
+def family(process: int) -> list[int]:
+    """A process and those that it started; none where it has ended."""
+    try:
+        children = Path(f"/proc/{process}/task/{process}/children").read_text().split()
+    except OSError:
+        return []
+    return [process, *(int(child) for child in children)]
+
+
+def proportional_set(process: int) -> int:
+    """Memory of a process, KiB, what it shares with others divided among them."""
+    try:
+        lines = Path(f"/proc/{process}/smaps_rollup").read_text().splitlines()
+    except OSError:
+        return 0
+    return sum(int(line.split()[1]) for line in lines if line.startswith("Pss:"))
 
 
 def row(what: str, ours: float, peer: str, theirs: float, least: float) -> dict[str, Any]:
@@ -336,7 +356,7 @@ def row(what: str, ours: float, peer: str, theirs: float, least: float) -> dict[
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("trials.json"))
+    parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".json"))
     parser.add_argument("--quick", action="store_true", help="shorter, rougher")
     parser.add_argument("--only", default="looking,moving,ten_methods,figure_5")
     options = parser.parse_args()

@@ -33,7 +33,7 @@ from planners.simulation import SearchModel
 def two_rooms() -> CellMap:
     """Return two rooms of 6 m x 6 m, and a passage of 1 m x 1 m between them: three cells in a row."""
     rooms = [shapely.box(0, 0, 6, 6), shapely.box(6, 2.5, 7, 3.5), shapely.box(7, 0, 13, 6)]
-    return convex_cells(FloorPlan("two rooms", shapely.union_all(rooms)))
+    return convex_cells(FloorPlan("two rooms", shapely.union_all(rooms)), method="exact")
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,7 @@
 """Shared and separate engines give the same captures; so do any workers, and a run that was cut off."""
 
 import math
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -26,6 +27,7 @@ from geomsim.seeds import trial_seeds
 from geomsim.trials import Trials, run_trials
 from geomsim.trials.bank import Bank
 from geomsim.trials.experiment import Experiment
+from geomsim.walking import Route, Routes
 
 FAST = {"still": Stationary(), "random": Random(), "greedy": Decoupled(depth=1)}
 
@@ -40,6 +42,10 @@ KINDS = {
     "sight": {},
     "cell": {"capture": "cell"},
     "a short, narrow and slow eye": {"team": Team(start=(2,), sensor=Sensor(5.0, 2.0, 0.3)), "trials": 12},
+    "an eye for each": {
+        "team": Team(sensor=(Sensor(4.0), Sensor(detection=0.3, field_of_view=2.0)), speed=(1.0, 0.6)),
+        "trials": 12,
+    },
     "cell, slow": {"capture": "cell", "team": Team(sensor=Sensor(detection=0.2))},
     "shortest paths": {"evader": Evader(model=ShortestPaths(), speed=0.7), "capture": "cell"},
     "hiding": {"evader": Evader(model=Hiding()), "team": Team(pursuers=3, speed=1.4)},
@@ -176,6 +182,33 @@ def test_several_evaders(house: CellMap) -> None:
         assert both.predicted > alone.predicted
     with pytest.raises(GeomsimError, match="With 2 evaders robots search on"):
         compare(house, evader=Evader(count=2), engine="shared")
+
+
+class Stubborn:
+    """Walks east, walls or not."""
+
+    def walk(self, routes: Routes, cell: int, rng: np.random.Generator, lookout: object) -> Iterator[Route]:  # noqa: ARG002
+        here = routes.checkpoint(cell)
+        way = np.stack([here, here + np.array([100.0, 0.0])])
+        while True:
+            yield Route((cell, cell), (cell, cell), way, np.array([0.0, 100.0]), math.inf, 100.0)
+
+
+@pytest.mark.parametrize("engine", ["shared", "separate"])
+def test_who_makes_no_progress_is_reported(house: CellMap, engine: str) -> None:
+    """Ten seconds at a wall are a note, not silence; and the wall holds."""
+    trials = compare(
+        house,
+        methods={"still": Stationary()},
+        evader=Evader(model=Stubborn()),
+        team=Team(start=(7,)),
+        capture="cell",
+        engine=engine,
+        trials=6,
+        timing=Timing(limit=30.0),
+    )
+    assert trials.wall_crossings == 0
+    assert any("The evader was held up at a wall for 10 s or more in 6 trials" in note for note in trials.notes)
 
 
 def test_what_is_not_captured_is_censored(house: CellMap) -> None:
