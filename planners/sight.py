@@ -6,7 +6,7 @@ import math
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +34,9 @@ MOST_LINES = 60_000_000
 # Lines of sight that are looked at together: some hundred megabytes.
 BATCH = 500_000
 
-InSight: TypeAlias = Callable[[NDArray[np.float64], NDArray[np.float64]], tuple[NDArray[np.intp], NDArray[np.intp]]]
+InSight: TypeAlias = Callable[
+    [NDArray[np.float64], NDArray[np.float64]], tuple[NDArray[np.integer[Any]], NDArray[np.integer[Any]]]
+]
 
 # A pursuer that looks all around has no heading.
 ALL_AROUND = math.tau - 1e-9
@@ -61,7 +63,7 @@ class SightMap:
         Where the stations are, metres.
     headings : ndarray, shape (K,)
         Where a pursuer that goes looks there, radians; NaN at checkpoints.
-    station, part : ndarray of intp, shape (L,)
+    station, part : ndarray of integers, shape (L,)
         Every pair that sees each other, ordered by station.
     """
 
@@ -71,8 +73,8 @@ class SightMap:
     first: NDArray[np.intp]
     places: NDArray[np.float64]
     headings: NDArray[np.float64]
-    station: NDArray[np.intp]
-    part: NDArray[np.intp]
+    station: NDArray[np.integer[Any]]
+    part: NDArray[np.integer[Any]]
 
     @classmethod
     def of(cls, cells: CellMap, roads: Roads, reach: float = math.inf, spacing: float = PART) -> SightMap:

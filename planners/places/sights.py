@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +36,7 @@ def sight_of_places(cells: CellMap, roads: Roads, places: Places, spacing: float
 
     def in_sight(
         stations: NDArray[np.float64], points: NDArray[np.float64]
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    ) -> tuple[NDArray[np.integer[Any]], NDArray[np.integer[Any]]]:
         from scipy.sparse import csr_array
 
         # the same point may be on many ways: each is looked from, and looked at, once
@@ -43,9 +44,11 @@ def sight_of_places(cells: CellMap, roads: Roads, places: Places, spacing: float
         indptr, indices = sight_among(cells.plan.walls, eyes, targets, reach)
         shape = (len(eyes), len(targets))
         once = csr_array((np.ones(len(indices), dtype=np.bool_), indices, indptr), shape=shape)
-        station, place = once[eye][:, target].tocoo().coords
-        order = np.lexsort((place, station))
-        return station[order].astype(np.intp), place[order].astype(np.intp)
+        seen = once[eye][:, target]
+        seen.sort_indices()
+        # in single words: there may be a hundred million pairs
+        station = np.repeat(np.arange(seen.shape[0], dtype=np.int32), np.diff(seen.indptr))
+        return station, seen.indices.astype(np.int32, copy=False)
 
     return SightMap.over(roads, places.space, places.points, spacing, in_sight)
 
