@@ -67,6 +67,12 @@ class CellMap:
         Name of the discretiser.
     names : tuple of str
         One for each cell, empty where the source has none.
+    tolerance : float
+        Share of its convex hull that a cell may lack by the promise of its method.
+    strict : bool
+        Whether a cell that lacks more is a problem, and not only to be told.
+    notes : tuple of str
+        What the method did otherwise than usual, a sentence each.
     """
 
     plan: FloorPlan
@@ -130,7 +136,17 @@ class CellMap:
 
 
 def graph_components(n: int, pairs: Sequence[tuple[int, int]], area: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Label the connected components of a graph of ``n`` vertices, shape (n,), 0 the one with most area."""
+    """Label the connected components of a graph, shape (n,), 0 the one with most area.
+
+    Parameters
+    ----------
+    n : int
+        Number of vertices.
+    pairs : sequence of pairs of int
+        Edges, vertices counted from 0.
+    area : ndarray, shape (n,)
+        Of each vertex, square metres.
+    """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

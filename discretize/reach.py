@@ -25,6 +25,9 @@ _LONGEST_CHORD = 1.5 * pi / (2 * _QUADRANT)
 _SPECK = 0.05
 """A place in which a body can stand but hardly move is no part of the reach beside a larger one, square metres."""
 
+_VOID = 50.0
+"""Nor is one smaller than this, in squares of the radius, where no body twice as wide can be: the inside of a wall."""
+
 _SHORT = 1e-6
 """Openings shorter than this are none, metres."""
 
@@ -249,7 +252,12 @@ def reach_of(space: FreeSpace, radius: float) -> Reach:
     shrunk = space.buffer(-radius / cos(_LONGEST_CHORD / 2), quad_segs=_QUADRANT) if radius > 0 else space
     parts = [p for p in shapely.get_parts(shrunk) if isinstance(p, shapely.Polygon) and p.area > 0]
     parts.sort(key=lambda p: (-p.area, p.bounds))
-    return Reach(radius, tuple(p for k, p in enumerate(parts) if k == 0 or p.area > _SPECK))
+    return Reach(radius, tuple(p for k, p in enumerate(parts) if k == 0 or _is_room(p, radius)))
+
+
+def _is_room(part: shapely.Polygon, radius: float) -> bool:
+    """Whether a place that is cut off from a larger one is worth a body's while."""
+    return part.area > _SPECK and (part.area > _VOID * radius**2 or not part.buffer(-radius).is_empty)
 
 
 def _tiles(part: shapely.Polygon) -> list[shapely.Polygon]:

@@ -20,16 +20,29 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from discretize import CellMap, Portal, check_cells, convex_cells
     from geomsim.communication import Communication
+    from geomsim.conformance import check_evader
     from geomsim.episode import Capture, Episode, Outcome, Status
-    from geomsim.evaders import CentroidBoundary, Fleeing, Hiding, ShortestPaths, Still
+    from geomsim.evaders import CentroidBoundary, Fleeing, Hiding, ShortestPaths, Still, register_evader
+    from geomsim.guide import Guide, Order, Orders, Report
+    from geomsim.plugins import load_plugins
     from geomsim.pursuit import Timing, run_episode
     from geomsim.scenario import Scenario, read_scenario
     from geomsim.sensing import Sensor
     from geomsim.team import Evader, Team
     from geomsim.trials import Trials, run_trials
-    from maps import FloorPlan, GeomsimError
+    from geomsim.waypoints import Waypoint, plan_waypoints, record_waypoints
+    from maps import FloorPlan, Format, GeomsimError, check_format, register_format, write_plan
     from maps import read_plan as load_plan
-    from planners import Decoupled, Random, SearchGraph, Stationary
+    from planners import (
+        Decoupled,
+        Random,
+        SearchGraph,
+        Stationary,
+        check_cost,
+        check_policy,
+        register_cost,
+        register_planner,
+    )
 
 __all__ = [
     "Capture",
@@ -41,11 +54,16 @@ __all__ = [
     "Evader",
     "Fleeing",
     "FloorPlan",
+    "Format",
     "GeomsimError",
+    "Guide",
     "Hiding",
+    "Order",
+    "Orders",
     "Outcome",
     "Portal",
     "Random",
+    "Report",
     "Scenario",
     "SearchGraph",
     "Sensor",
@@ -56,27 +74,53 @@ __all__ = [
     "Team",
     "Timing",
     "Trials",
+    "Waypoint",
     "check_cells",
+    "check_cost",
+    "check_evader",
+    "check_format",
+    "check_policy",
     "convex_cells",
     "load_plan",
+    "load_plugins",
+    "plan_waypoints",
     "read_scenario",
+    "record_waypoints",
+    "register_cost",
+    "register_evader",
+    "register_format",
+    "register_planner",
     "run_episode",
     "run_trials",
+    "write_plan",
 ]
 
 # Where each public name lives: it is imported when first asked for, so that `import geomsim` costs next to nothing.
 _HOMES = {
     "discretize": ("CellMap", "Portal", "check_cells", "convex_cells"),
-    "maps": ("FloorPlan", "GeomsimError"),
-    "planners": ("Decoupled", "Random", "SearchGraph", "Stationary"),
+    "maps": ("FloorPlan", "Format", "GeomsimError", "check_format", "register_format", "write_plan"),
+    "planners": (
+        "Decoupled",
+        "Random",
+        "SearchGraph",
+        "Stationary",
+        "check_cost",
+        "check_policy",
+        "register_cost",
+        "register_planner",
+    ),
     "geomsim.communication": ("Communication",),
+    "geomsim.conformance": ("check_evader",),
     "geomsim.episode": ("Capture", "Episode", "Outcome", "Status"),
-    "geomsim.evaders": ("CentroidBoundary", "Fleeing", "Hiding", "ShortestPaths", "Still"),
+    "geomsim.evaders": ("CentroidBoundary", "Fleeing", "Hiding", "ShortestPaths", "Still", "register_evader"),
+    "geomsim.guide": ("Guide", "Order", "Orders", "Report"),
+    "geomsim.plugins": ("load_plugins",),
     "geomsim.pursuit": ("Timing", "run_episode"),
     "geomsim.scenario": ("Scenario", "read_scenario"),
     "geomsim.sensing": ("Sensor",),
     "geomsim.team": ("Evader", "Team"),
     "geomsim.trials": ("Trials", "run_trials"),
+    "geomsim.waypoints": ("Waypoint", "plan_waypoints", "record_waypoints"),
 }
 
 

@@ -83,6 +83,8 @@ class Chase:
         What the team believes of the evaders' motion.
     timing : Timing
         Clocks.
+    crew : type
+        How the team goes: from checkpoint to checkpoint, as its planner says, or otherwise.
     """
 
     def __init__(
@@ -94,13 +96,14 @@ class Chase:
         capture: str,
         motion: MotionModel,
         timing: Timing,
+        crew: type[Teamwork] = Teamwork,
     ) -> None:
         theirs, ours = Streams(seeds[0]), Streams(seeds[1])
         starts = place_team(cells, team)
         self.team, self.capture, self.timing = team, capture, timing
         placing, them = theirs.placing, range(evader.count)
         hideouts = [place_evader(cells, evader, starts, placing) for _ in them]
-        self.work = Teamwork(cells, team, starts, motion, timing.belief_step, [ours.deciding], evader.count)
+        self.work = crew(cells, team, starts, motion, timing.belief_step, [ours.deciding], evader.count)
         chance = [theirs.moving_of(k) for k in them]
         self.quarry = Quarry(cells.plan.walls, Routes(cells), evader, hideouts, chance)
         self.patience = theirs.noticing.exponential(size=(evader.count, team.pursuers))
@@ -112,29 +115,41 @@ class Chase:
 
     def run(self, progress: Callable[[float, float], None] | None) -> Outcome:
         """Step until everyone is captured, the time limit or Ctrl-C."""
-        dt, crew = self.timing.physics_step, self.work.crews[0]
-        status = Status.TIME_LIMIT
-        self._note(0.0)
-        self._believe(0.0)
+        dt, status = self.timing.physics_step, Status.TIME_LIMIT
         try:
-            self._look(0.0)
+            self.begin()
             for k in range(self.timing.steps):
-                if not crew.free.any():
+                if self.is_over:
                     break
                 self.quarry.robots = self.work.positions[0]
                 self.work.step(k * dt, dt)
-                self.quarry.step(dt)
-                time = round((k + 1) * dt, 6)  # 0.3, not 0.30000000000000004
-                self._note(time)
-                if (k + 1) % self.timing.steps_per_belief == 0:
-                    self.work.learn(self._ranges())
-                    self._believe(time)
-                    if progress is not None:
-                        progress(time, float(self.work.beliefs[0, 0]))
-                self._look(time)
+                self.settle(k)
+                if progress is not None and (k + 1) % self.timing.steps_per_belief == 0:
+                    progress(self.log.times[-1], float(self.work.beliefs[0, 0]))
         except KeyboardInterrupt:
             status = Status.INTERRUPTED
-        return self._outcome(status if crew.free.any() else Status.CAPTURED)
+        return self.outcome(status)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether everyone is captured."""
+        return not self.work.crews[0].free.any()
+
+    def begin(self) -> None:
+        """Note how it begins, and let the robots look."""
+        self._note(0.0)
+        self._believe(0.0)
+        self._look(0.0)
+
+    def settle(self, k: int) -> None:
+        """Let the evaders move in physics step ``k``, in which the team has moved already; then the robots look."""
+        self.quarry.step(self.timing.physics_step)
+        time = round((k + 1) * self.timing.physics_step, 6)  # 0.3, not 0.30000000000000004
+        self._note(time)
+        if (k + 1) % self.timing.steps_per_belief == 0:
+            self.work.learn(self._ranges())
+            self._believe(time)
+        self._look(time)
 
     def _note(self, time: float) -> None:
         log, at, cells = self.log, self.quarry.positions.copy(), self.quarry.cells.copy()
@@ -189,7 +204,9 @@ class Chase:
                     return i
         return None
 
-    def _outcome(self, status: Status) -> Outcome:
+    def outcome(self, status: Status) -> Outcome:
+        """Tell how it ended: captured, or for the reason that is given."""
+        status = Status.CAPTURED if self.is_over else status
         captured, several = status is Status.CAPTURED, len(self.quarry) > 1
         names = [f"Pursuer {i + 1}" for i in range(self.team.pursuers)]
         names += [f"Evader {k + 1}" for k in range(len(self.quarry))] if several else ["The evader"]

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Protocol, TypeAlias
+from typing import Protocol, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geomsim.walking import Route, Routes
 from maps import GeomsimError, nearest
+from maps.errors import enter
 from planners import MotionModel, StationaryMotion
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "ShortestPaths",
     "Still",
     "make_evader_model",
+    "register_evader",
 ]
 
 Lookout: TypeAlias = Callable[[], NDArray[np.float64]]
@@ -54,6 +56,9 @@ class EvaderModel(Protocol):
             For models that react; to be asked between two routes.
         """
         ...
+
+
+_Model = TypeVar("_Model", bound=EvaderModel)
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,16 +172,33 @@ def _stroll(routes: Routes, cell: int, share: float) -> Route:
     return routes.between(cell, neighbours[int(share * len(neighbours))])
 
 
-EVADERS: Mapping[str, type[EvaderModel]] = MappingProxyType(
-    {
-        "centroid-boundary": CentroidBoundary,
-        "still": Still,
-        "shortest-paths": ShortestPaths,
-        "hiding": Hiding,
-        "fleeing": Fleeing,
-    }
-)
+_EVADERS: dict[str, type[EvaderModel]] = {
+    "centroid-boundary": CentroidBoundary,
+    "still": Still,
+    "shortest-paths": ShortestPaths,
+    "hiding": Hiding,
+    "fleeing": Fleeing,
+}
+EVADERS: Mapping[str, type[EvaderModel]] = MappingProxyType(_EVADERS)
 """Every evader model by its name."""
+
+
+def register_evader(name: str) -> Callable[[type[_Model]], type[_Model]]:
+    """Give an evader model of one's own a name, under which scenarios and the command line find it; a decorator.
+
+    The class is made without arguments, so its parameters need defaults.
+
+    Raises
+    ------
+    GeomsimError
+        If the name is none, or there is another one of it.
+    """
+
+    def register(model: type[_Model]) -> type[_Model]:
+        enter(_EVADERS, "evader model", name, model)
+        return model
+
+    return register
 
 
 def make_evader_model(name: str) -> EvaderModel:

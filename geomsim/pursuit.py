@@ -14,7 +14,7 @@ from geomsim.team import Evader, Team
 from maps import FloorPlan, GeomsimError, nearest
 from planners import AreaSpeedDegree, MotionModel, SearchGraph
 
-__all__ = ["CAPTURE_RULES", "HELD_UP", "Timing", "check_pursuit", "run_episode"]
+__all__ = ["CAPTURE_RULES", "HELD_UP", "Timing", "check_clocks", "check_pursuit", "run_episode"]
 
 CAPTURE_RULES = {
     "sight": "a pursuer has a free line of sight to the evader, within its range and field of view",
@@ -122,8 +122,7 @@ def run_episode(
     if plan is not cells.plan and not plan.space.equals(cells.plan.space):
         raise GeomsimError(f"The cells were made of plan {cells.plan.name!r}, not of {plan.name!r}.")
     check_pursuit(cells, team, evader, capture)
-    _check_steps(team, evader, timing)
-    _check_hops(SearchGraph.from_cells(cells), team, timing)
+    check_clocks(cells, team, evader, timing)
     seeds = seed, seed if team_seed is None else team_seed
     chase = Chase(cells, team, evader, seeds, capture, motion or AreaSpeedDegree(evader.speed), timing)
     outcome = chase.run(progress)
@@ -143,6 +142,12 @@ def check_pursuit(cells: CellMap, team: Team, evader: Evader, capture: str) -> N
             raise GeomsimError(
                 f"The {who}'s radius, {radius:g} m, is larger than the {cells.radius:g} m that the cells were made for."
             )
+
+
+def check_clocks(cells: CellMap, team: Team, evader: Evader, timing: Timing) -> None:
+    """Raise GeomsimError for clocks with which a body would miss walls, or a pursuit outgrow memory or patience."""
+    _check_steps(team, evader, timing)
+    _check_hops(SearchGraph.from_cells(cells), team, timing)
 
 
 def _check_steps(team: Team, evader: Evader, timing: Timing) -> None:

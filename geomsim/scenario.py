@@ -311,7 +311,7 @@ def _planner_keys(planner: Planner) -> dict[str, Any]:
     names = {entry.make: name for name, entry in PLANNERS.items()}
     told = {key: getattr(planner, key) for key in getattr(planner, "__dataclass_fields__", ())}
     own = {key: told.pop(key) for key in ("cost", "depth") if key in told}
-    return {"planner": names.get(type(planner), type(planner).__name__), **own, "options": told}
+    return {"planner": names.get(type(planner), type(planner).__name__), **own, "options": _told(told)}
 
 
 def _each(values: Sequence[float]) -> float | list[float]:

@@ -21,7 +21,7 @@ from geomsim.team import Team
 from geomsim.walking import Routes, Walkers
 from geomsim.world import World
 from maps import GeomsimError
-from planners import CaptureModel, LineOfSight, MotionModel, PursuerState
+from planners import CaptureModel, LineOfSight, MotionModel, PursuerState, SearchProblem
 
 if TYPE_CHECKING:
     from planners.motion import Sparse
@@ -91,7 +91,7 @@ class Teamwork:
         deciding: Sequence[np.random.Generator],
         evaders: int = 1,
     ) -> None:
-        self.team = team
+        self.team, self._where = team, cells
         roads, self._problem = believed_problem(cells, team, motion, belief_step)
         self.routes = Routes(roads)
         self.runs, self._shape = len(deciding), (len(deciding), team.pursuers)
@@ -122,6 +122,11 @@ class Teamwork:
         self.choices: list[Choice] = []
 
     @property
+    def problem(self) -> SearchProblem:
+        """What the team plans for."""
+        return self._problem
+
+    @property
     def positions(self) -> NDArray[np.float64]:
         """Where the pursuers are, shape (R, P, 2), metres."""
         return self._world.positions.reshape(*self._shape, 2)
@@ -130,6 +135,11 @@ class Teamwork:
     def cells(self) -> NDArray[np.int32]:
         """The cells in which they are, counted from 0, shape (R, P)."""
         return self._walkers.cells.reshape(self._shape)
+
+    @property
+    def goals(self) -> NDArray[np.int32]:
+        """The checkpoints at which they are or will be next, shape (R, P)."""
+        return self._walkers.ends.reshape(self._shape)
 
     @property
     def idle(self) -> NDArray[np.float64]:
@@ -149,13 +159,28 @@ class Teamwork:
 
     def step(self, time: float, dt: float) -> None:
         """Go on from ``time`` by ``dt``, both in seconds; whoever comes to a checkpoint decides."""
-        walkers, at, velocity = self._walkers, self._world.positions, self._world.velocities
-        walkers.advance(at, velocity, dt)
-        while (done := walkers.done).any():
-            for run in np.flatnonzero(done.reshape(self._shape).any(axis=1)).tolist():
-                self._decide(run, time, done)
-        self._world.step(walkers.wanted(dt), dt)
+        self.advance(dt)
+        while self.waiting.any():
+            for run in np.flatnonzero(self.waiting.any(axis=1)).tolist():
+                self._decide(run, time)
+        self.finish(dt)
+
+    @property
+    def waiting(self) -> NDArray[np.bool_]:
+        """Who has come to a checkpoint and must be sent on before the step can be finished, shape (R, P)."""
+        return self._walkers.done.reshape(self._shape)
+
+    def advance(self, dt: float) -> None:
+        """Begin a step of ``dt`` seconds: go on along the ways to the checkpoints."""
+        self._walkers.advance(self._world.positions, self._world.velocities, dt)
+
+    def finish(self, dt: float) -> None:
+        """Finish the step: the bodies move."""
         self._looks.lag = 2.0 * dt
+        self._move(self._walkers.wanted(dt), dt)
+
+    def _move(self, wanted: NDArray[np.float64], dt: float) -> None:
+        self._world.step(wanted, dt)
         vx, vy = self._world.velocities.T
         course = np.where(np.hypot(vx, vy) > 1e-3, np.arctan2(vy, vx), self.headings.reshape(-1))
         self.headings = course.reshape(self._shape)
@@ -177,34 +202,56 @@ class Teamwork:
     def _contacts(self, run: int) -> NDArray[np.bool_]:
         return self.team.communication.contacts(self._world, self.positions[run])
 
-    def _decide(self, run: int, time: float, done: NDArray[np.bool_]) -> None:
+    def states(self, run: int) -> list[PursuerState]:
+        """Return where the pursuers of a run are on their ways."""
         walkers, first = self._walkers, run * self.team.pursuers
-        mine = range(first, first + self.team.pursuers)
-        aimed, left = walkers.aimed_stops, walkers.time_left
-        pursuers = [
+        done, aimed, left = walkers.done, walkers.aimed_stops, walkers.time_left
+        return [
             PursuerState(int(walkers.ends[k]))
             if done[k]
             else PursuerState(int(aimed[k]), int(walkers.ends[k]), float(left[k]))
-            for k in mine
+            for k in range(first, first + self.team.pursuers)
         ]
-        decisions = self.crews[run].decide(time, pursuers, [bool(done[k]) for k in mine], self._contacts(run))
-        for i, (k, decision) in enumerate(zip(mine, decisions, strict=True)):
-            if not done[k]:
-                continue
-            here = int(walkers.ends[k])
-            if decision is None or not decision.path or decision.path[0] not in (here, *self.routes.neighbours[here]):
-                raise GeomsimError(
-                    f"The policy of {type(self.team.planner).__name__} sent pursuer {i + 1} from cell {here + 1} to "
-                    "no neighbour of it; run planners.check_policy on it."
-                )
-            cells = self._problem.states.cells
-            self.choices.append(Choice(time, run, i, tuple(stop for stop in decision.path if stop < cells)))
-            to = decision.path[0]
-            if to == here:
-                walkers.take(k, self.routes.stay(here, float(self._stays[k])))
-            else:
-                self._looks.arrival[k] = self.routes.roads.graph.edge(here, to)
-                walkers.take(k, self.routes.between(here, to))
+
+    def send(self, run: int, pursuer: int, time: float, path: Sequence[int]) -> None:
+        """Send a pursuer that waits at a checkpoint to a neighbouring one, or let it stay for a belief step.
+
+        Parameters
+        ----------
+        run, pursuer : int
+            Who, counted from 0.
+        time : float
+            Seconds.
+        path : sequence of int
+            Checkpoints to visit, counted from 0, the next one first; its own to stay.
+
+        Raises
+        ------
+        GeomsimError
+            If the path does not begin with a neighbour of the pursuer's checkpoint or that itself.
+        """
+        k = run * self.team.pursuers + pursuer
+        here = int(self._walkers.ends[k])
+        if not path or path[0] not in (here, *self.routes.neighbours[here]):
+            raise GeomsimError(
+                f"The policy of {type(self.team.planner).__name__} sent pursuer {pursuer + 1} from cell {here + 1} to "
+                "no neighbour of it; run planners.check_policy on it."
+            )
+        cells = self._problem.states.cells
+        self.choices.append(Choice(time, run, pursuer, tuple(stop for stop in path if stop < cells)))
+        to = path[0]
+        if to == here:
+            self._walkers.take(k, self.routes.stay(here, float(self._stays[k])))
+        else:
+            self._looks.arrival[k] = self.routes.roads.graph.edge(here, to)
+            self._walkers.take(k, self.routes.between(here, to))
+
+    def _decide(self, run: int, time: float) -> None:
+        waiting = self.waiting[run].tolist()
+        decisions = self.crews[run].decide(time, self.states(run), waiting, self._contacts(run))
+        for pursuer in np.flatnonzero(waiting).tolist():
+            decision = decisions[pursuer]
+            self.send(run, pursuer, time, () if decision is None else decision.path)
 
 
 class _Looks:

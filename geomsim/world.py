@@ -131,7 +131,8 @@ class World:
         batch.get_space_bodies(self.space, fields, self._get)
         rows = np.frombuffer(self._get.float_buf(), dtype=np.float64).reshape(-1, 4)
         # column by column: NumPy goes along K bodies many times faster than along the two coordinates of each
-        mine = np.asfortranarray(rows[: self._count] if self._order is None else rows[self._order])
+        # (and a copy: asfortranarray would give the buffer itself for one body)
+        mine = np.array(rows[: self._count] if self._order is None else rows[self._order], order="F")
         self.positions, self.velocities = mine[:, :2], mine[:, 2:]
 
 

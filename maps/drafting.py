@@ -108,7 +108,15 @@ def draft_plan(
 def draft_rooms(
     rooms: Sequence[Room], doors: Sequence[Door], *, wall: float = 0.03
 ) -> tuple[dict[int, shapely.Polygon], list[shapely.LineString]]:
-    """Return the exactly convex free space of each room by its number, and the door segments of a sketch."""
+    """Return the exactly convex free space of each room by its number, and the door segments of a sketch.
+
+    Parameters
+    ----------
+    rooms, doors : sequence of Room, Door
+        The sketch.
+    wall : float
+        Thickness of the walls, metres.
+    """
     outlines = {room.number: room.outline for room in rooms}
     _check_rooms(rooms, outlines)
     segments = [_segment(door, outlines, wall) for door in doors]

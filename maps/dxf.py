@@ -52,10 +52,16 @@ def read_dxf(path: Path, *, units: str | None = None) -> FloorPlan:
         drawing = ezdxf.readfile(path)
     except OSError as exc:
         raise PlanError(f"{where}: the file cannot be read as a DXF drawing ({exc}).") from exc
-    except (ezdxf.DXFError, UnicodeDecodeError, ValueError, IndexError) as exc:
+    except Exception as exc:  # a damaged table leads ezdxf to errors of nearly every kind
         raise PlanError(f"{where}: this is no DXF drawing, or it is damaged.") from exc
     metres = _unit(drawing, units, where)
-    shapes = [(layer, shapely.transform(g, lambda xy: xy * metres)) for layer, g in _shapes(drawing, FLATTEN / metres)]
+    try:
+        drawn = list(_shapes(drawing, FLATTEN / metres))
+    except PlanError:
+        raise
+    except Exception as exc:
+        raise PlanError(f"{where}: the drawing is damaged; {type(exc).__name__} in its entities.") from exc
+    shapes = [(layer, shapely.transform(g, lambda xy: xy * metres)) for layer, g in drawn]
     free, solid, repairs = space_of(shapes, where)
     return make_plan(free, name=path.stem, solid=solid, source=where, repairs=repairs)
 

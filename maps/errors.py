@@ -2,10 +2,12 @@
 
 import difflib
 import math
+import re
 import reprlib
 from collections.abc import Iterable
+from typing import Any
 
-__all__ = ["GeomsimError", "PlanError", "nearest", "shortened", "shown"]
+__all__ = ["ConformanceError", "GeomsimError", "PlanError", "enter", "nearest", "shortened", "shown"]
 
 
 class GeomsimError(Exception):
@@ -14,6 +16,10 @@ class GeomsimError(Exception):
 
 class PlanError(GeomsimError):
     """A floor plan that cannot be read or used; the message names the file and the place in it."""
+
+
+class ConformanceError(GeomsimError):
+    """A planner, heuristic, evader model or reader that breaks a rule; the message says which one, and where."""
 
 
 class _Short(reprlib.Repr):
@@ -55,3 +61,12 @@ def nearest(name: str, valid: Iterable[str]) -> str:
         match = next(n for n in names if n.lower() == close[0])
         return f"did you mean {match!r}?"
     return "choose one of " + ", ".join(repr(n) for n in names) + "."
+
+
+def enter(table: dict[str, Any], what: str, name: str, thing: Any) -> None:
+    """Enter what a user made into a table of names; GeomsimError if the name is none or is taken."""
+    if not re.fullmatch(r"[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*", name):
+        raise GeomsimError(f"A {what} cannot be called {name!r}: small letters and digits, with dashes between words.")
+    if name in table:
+        raise GeomsimError(f"There is a {what} {name!r} already; choose another name.")
+    table[name] = thing

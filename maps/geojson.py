@@ -198,7 +198,7 @@ def _numbers(data: dict[str, Any], where: str) -> list[int]:
 
 
 def write_geojson(plan: FloorPlan, path: Path) -> Path:
-    """Write a floor plan in our own schema; reading it back gives the same plan."""
+    """Write a ``plan`` in our own schema to a ``path``; reading it back gives the same plan."""
     write_whole(path, geojson_text(plan).encode())
     return path
 

@@ -16,7 +16,11 @@ from maps.making import make_plan
 from maps.noise import NARROW, Mask, without_pin_holes, without_rays, without_specks
 from maps.tracing import straighten, trace
 
-__all__ = ["plan_from_mask"]
+__all__ = ["MOST_SIDES", "plan_from_mask"]
+
+MOST_SIDES = 2_000_000
+"""Sides that free pixels may share with others. A scan of 16 million pixels has some hundred thousand; what takes
+minutes and gigabytes to trace is no building."""
 
 STRAIGHT = 1.5
 """Walls may move by this many pixels when their staircases are made straight ..."""
@@ -62,12 +66,18 @@ def plan_from_mask(
     Raises
     ------
     PlanError
-        If no pixel is free, or all are.
+        If no pixel is free, or all are, or the picture is nothing but noise.
     """
     if not free.any():
         raise PlanError(f"{source}: there is no free space in it; none of its {free.size} pixels is free.")
     if free.all():
         raise PlanError(f"{source}: there is no wall in it; all of its {free.size} pixels are free.")
+    sides = int(np.count_nonzero(free[1:] != free[:-1])) + int(np.count_nonzero(free[:, 1:] != free[:, :-1]))
+    if sides > MOST_SIDES:
+        raise PlanError(
+            f"{source}: this is noise and no map of a building; free and other pixels meet in {sides} places, and "
+            f"{MOST_SIDES} are the most."
+        )
 
     def place(xy: NDArray[np.float64]) -> NDArray[np.float64]:
         turn = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])

@@ -28,7 +28,7 @@ from maps.texts import check_file, read_bytes, reason
 from maps.wkt import read_wkt
 from maps.wrld import read_wrld
 
-__all__ = ["FORMATS", "Format", "bundled_names", "read_plan"]
+__all__ = ["FORMATS", "Format", "bundled_names", "read_plan", "register_format"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ JSON = (".geojson", ".json")
 YAML = (".yaml", ".yml")
 PICTURES = (".png", ".pgm", ".bmp", ".jpg", ".jpeg", ".tif", ".tiff")
 
-FORMATS = (
+FORMATS: list[Format] = [
     Format("OpenStreetMap indoor", JSON, read_osm, ("level",), rb'"indoor"\s*:'),
     Format("WRLD indoor", JSON, read_wrld, (), rb'"building_outline"'),
     Format("HouseExpo", JSON, read_houseexpo, (), rb'"verts"\s*:'),
@@ -78,8 +78,31 @@ FORMATS = (
     Format("SVG drawing", (".svg",), read_svg, ("resolution", "units")),
     Format("IFC building model", (".ifc",), read_ifc, ("level",)),
     Format("IndoorGML", (".gml", ".indoorgml"), read_indoorgml, ("level",)),
-)
-"""Every kind of file that can be read; a new one joins by a line here."""
+]
+"""Every kind of file that can be read; a new one joins by a line here, or by :func:`register_format`."""
+
+
+def register_format(kind: Format) -> Format:
+    """Let :func:`read_plan`, and so every command, read another kind of file.
+
+    It is tried before those that are there; if one of its suffixes is known already, its ``sign`` must tell it apart.
+
+    Raises
+    ------
+    PlanError
+        If its name is taken, a suffix has no dot or big letters, or a known suffix comes without a sign.
+    """
+    if kind.name.lower() in (known.name.lower() for known in FORMATS):
+        raise PlanError(f"There is a format {kind.name!r} already; choose another name.")
+    for suffix in kind.suffixes:
+        if not suffix.startswith(".") or suffix != suffix.lower():
+            raise PlanError(f"The suffix {suffix!r} of the format {kind.name!r} must be in small letters, with a dot.")
+        if not kind.sign and any(suffix in known.suffixes for known in FORMATS):
+            raise PlanError(f"Files that end in {suffix} are known; the format {kind.name!r} needs a sign to tell it.")
+    if not kind.suffixes:
+        raise PlanError(f"The format {kind.name!r} needs a suffix.")
+    FORMATS.insert(0, kind)
+    return kind
 
 
 def bundled_names() -> tuple[str, ...]:

@@ -6,6 +6,7 @@ A shape's name is its ``id``, ``class`` and label together with those of the gro
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -72,10 +73,12 @@ def _lines(
     own = [value for key, value in element.attrib.items() if key.rpartition("}")[2] in ("id", "class", "label")]
     name = " ".join([names, *own])
     try:
-        matrix = outer @ tools.parser.parse_transform(element.get("transform"))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # what it does not understand of a transform it would leave out
+            matrix = outer @ tools.parser.parse_transform(element.get("transform"))
         for xy in _vertices(element, tools):
             yield name, (np.column_stack([xy, np.ones(len(xy))]) @ matrix.T)[:, :2]
-    except (ValueError, IndexError, KeyError, TypeError, AssertionError) as exc:
+    except (ValueError, IndexError, KeyError, TypeError, AssertionError, Warning) as exc:
         what = f"{kind_of(element)} {element.get('id', '')}".strip()
         raise PlanError(f"{where}: the shape {what!r} has coordinates that are missing or wrong.") from exc
     for child in element:

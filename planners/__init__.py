@@ -1,11 +1,12 @@
 """Belief, motion and capture models, cost heuristics, path search, coordination."""
 
+from maps import ConformanceError
 from planners.baselines import Random, Stationary
 from planners.beam import Beam
 from planners.belief import advance, point_belief, uniform_belief
 from planners.capture import CaptureError, CaptureModel, SameCell
-from planners.conformance import ConformanceError, check_policy
-from planners.costs import COSTS, Cost, CostError, Hops, find_cost
+from planners.conformance import check_cost, check_policy
+from planners.costs import COSTS, Cost, CostError, Hops, find_cost, register_cost
 from planners.coupled import Coupled
 from planners.edgelist import read_edge_list, unit_problem
 from planners.evaluation import Prediction, lower_bounds, predict
@@ -34,7 +35,8 @@ from planners.motion import (
 )
 from planners.parts import MotionInParts, cut_cells
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
-from planners.registry import PLANNERS, PlannerEntry, make_planner, parse_method
+from planners.refining import Refined
+from planners.registry import PLANNERS, PlannerEntry, make_planner, parse_method, register_planner
 from planners.roads import CHECKPOINTS, Roads
 from planners.rollout import Rollout
 from planners.sight import LineOfSight, OwnCell, SightMap
@@ -75,6 +77,7 @@ __all__ = [
     "Prediction",
     "PursuerState",
     "Random",
+    "Refined",
     "Roads",
     "Rollout",
     "SameCell",
@@ -89,6 +92,7 @@ __all__ = [
     "TooLargeError",
     "UniformMotion",
     "advance",
+    "check_cost",
     "check_policy",
     "check_transition",
     "cut_cells",
@@ -105,6 +109,8 @@ __all__ = [
     "predict",
     "read_edge_list",
     "region_belief",
+    "register_cost",
+    "register_planner",
     "reported_sighting",
     "uniform_belief",
     "unit_problem",

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planners.clock import FOREVER, Clock
 from planners.policy import SearchProblem
 from planners.simulation import SearchModel
 from planners.team import TeamPolicy, at_least
@@ -40,26 +41,30 @@ class Beam:
         Time between two searches, belief steps.
     alike : int
         Plans of the same joint position that are pursued at a time.
+    seconds : float
+        Thinking time for one decision; with a limit, results depend on the machine.
 
     Raises
     ------
     PlannerError
-        If one of them is below 1.
+        If one of them is below 1, or the time below 0.
     """
 
     width: int = 200
     horizon: int = 120
     patience: int = 10
     alike: int = 1
+    seconds: float = float("inf")
 
     def __post_init__(self) -> None:
         at_least(1, width=self.width, horizon=self.horizon, patience=self.patience, alike=self.alike)
+        at_least(0, seconds=self.seconds)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
         """Prepare a policy; nothing in it is random."""
         model = SearchModel(problem)
         search = BeamSearch(model, width=self.width, alike=self.alike, horizon=self.horizon)
-        return TeamPolicy(model, lambda *now: search.run(*now).moves, self.patience)
+        return TeamPolicy(model, lambda *now: search.run(*now).moves, self.patience, self.seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,6 +136,7 @@ class BeamSearch:
         moves: Sequence[int],
         done: Sequence[int],
         announced: Sequence[Sequence[int]] = (),
+        clock: Clock = FOREVER,
     ) -> TeamPlan:
         """Return the best plan found.
 
@@ -143,11 +149,13 @@ class BeamSearch:
         announced : sequence of sequence of int
             Moves that each pursuer means to begin, from an earlier plan. The plan that keeps to them stays in the
             beam until one of them ends, so that searching again does no harm.
+        clock : Clock
+            Ends the search; the plan is as long then as the beam has come.
         """
         beam = _Beam(self, belief, moves, done, announced)
         for _ in range(self.horizon):
             beam.advance()
-            if beam.left.min() < self.residue:
+            if beam.left.min() < self.residue or clock.over():
                 break
         return beam.best()
 

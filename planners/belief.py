@@ -50,7 +50,7 @@ def uniform_belief(
 
 
 def point_belief(graph: SearchGraph, cell: int) -> NDArray[np.float64]:
-    """Return the belief of an evader known to be in one cell, counted from 0; shape (N + 1,).
+    """Return the belief of an evader known to be in one ``cell`` of ``graph``, counted from 0; shape (N + 1,).
 
     Raises
     ------

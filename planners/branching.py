@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from planners.clock import FOREVER, Clock
 from planners.simulation import Moves, SearchModel
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class JointSearch:
         self.looks = Look(*_rows(model.looks.table))
         self.kind = np.array(model.kind)
         self.ways = _ways(model.kinds, self.motion, self.looks)
-        self._stack = self._new_stack()
+        self.stack = self._new_stack()
 
     def value(
         self,
@@ -118,7 +119,7 @@ class JointSearch:
         who: Sequence[int] | None = None,
         absent: Sequence[int] = (),
         nodes: int = 1_000_000,
-        seconds: float = np.inf,
+        clock: Clock = FOREVER,
     ) -> Certificate:
         """Return the best plan found, and a bound on all.
 
@@ -136,8 +137,8 @@ class JointSearch:
             Pursuers that are left out, as if they saw nothing.
         nodes : int
             The search ends after about this many nodes.
-        seconds : float
-            The search ends after this time.
+        clock : Clock
+            Ends the search.
         """
         begun = time.perf_counter()
         who = [i for i in (range(len(moves)) if who is None else who) if self._free_at(i, moves, done) < self.horizon]
@@ -149,9 +150,9 @@ class JointSearch:
             value = self._worth_of(belief, fixed)
             return Certificate(value, value, tuple(found), 0, time.perf_counter() - begun)
         if len(who) == 1:
-            value, bound, opened, rows = self._one(belief, who[0], first[0], fixed, known, nodes, begun + seconds)
+            value, bound, opened, rows = self._one(belief, who[0], first[0], fixed, known, nodes, clock)
         else:
-            value, bound, opened, rows = self._joint(belief, who, first, fixed, known, nodes, begun + seconds)
+            value, bound, opened, rows = self._joint(belief, who, first, fixed, known, nodes, clock)
         if rows[0, 0] >= 0:
             for i, (free, _), row in zip(who, first, rows, strict=True):
                 found[i] = tuple(int(m) for m in row[: self._length(i, row, int(free))])
@@ -165,10 +166,10 @@ class JointSearch:
         fixed: NDArray[np.float64],
         known: float,
         nodes: int,
-        until: float,
+        clock: Clock,
     ) -> tuple[float, float, int, NDArray[np.int64]]:
         """Return value, bound, nodes and moves of one pursuer's best path; searched anew with twice as many nodes."""
-        from planners.kernels import best_path, new_path, values_from, weigh
+        from planners.kernels import ANYWHERE, best_path, new_path, values_from, weigh
 
         worth, seen, path = (
             np.empty((self.horizon + 1, self.model.states)),
@@ -181,14 +182,14 @@ class JointSearch:
         begin, cell = int(first[0]), int(first[1])
         for t in range(begin):
             free = self.model.disperse(free) * fixed[t]
-        best, ways = known - base, self._kind_of(pursuer)
+        best, ways = known - base, self.kind_of(pursuer)
         while True:
-            self._stack.free[0, begin] = free[0]
+            self.stack.free[0, begin] = free[0]
             best, bound, more = best_path(
-                begin, cell, fixed, worth, self.motion, self.looks, ways, self._stack, path, best, 0.0, budget
+                begin, cell, fixed, worth, self.motion, self.looks, ways, self.stack, path, ANYWHERE, best, 0.0, budget
             )
             opened, budget = opened + more, 2 * budget
-            if bound <= best or opened >= nodes or time.perf_counter() >= until:
+            if bound <= best or opened >= nodes or clock.over():
                 return base + best, base + bound, opened, path.moves[np.newaxis]
 
     def _free_at(self, pursuer: int, moves: Sequence[int], done: Sequence[int]) -> int:
@@ -235,7 +236,7 @@ class JointSearch:
         fixed: NDArray[np.float64],
         known: float,
         nodes: int,
-        until: float,
+        clock: Clock,
     ) -> tuple[float, float, int, NDArray[np.int64]]:
         """Return value, bound, nodes and moves of the best joint plan of several pursuers."""
         from planners.pricing import AT_FIRST, Task, search
@@ -246,7 +247,7 @@ class JointSearch:
         state, room = self._make_room(len(who))
         room.certain[0] = fixed
         level, best, opened = AT_FIRST, known, 0
-        while level != -1 and opened < nodes and time.perf_counter() < until:
+        while level != -1 and opened < nodes and not clock.over():
             level, best, more = search(level, best, min(BATCH, nodes - opened), task, state, room)
             opened += more
         bound = max(best, room.summary[2])
@@ -255,7 +256,7 @@ class JointSearch:
             bound = max(bound, state.bounds[k, : len(open_moves)].max(where=open_moves, initial=0.0))
         return float(best), float(bound), opened, room.plan
 
-    def _kind_of(self, pursuer: int) -> Any:
+    def kind_of(self, pursuer: int) -> Any:
         """Return the moves of one pursuer for the compiled search."""
         start, target, steps, views, ptr, *links = self.ways
         kind = self.kind[pursuer]
@@ -272,7 +273,7 @@ class JointSearch:
         """Return the nodes and the room of a joint search; made once for each number of pursuers."""
         from planners.pricing import Nodes, Room
 
-        horizon, states, widest = self.horizon, self.model.states, self._stack.bounds.shape[1]
+        horizon, states, widest = self.horizon, self.model.states, self.stack.bounds.shape[1]
         # A level for each step of each pursuer but the last, and a spare one.
         levels, steps = (team - 1) * horizon + 1, (horizon, states)
         whole = np.int64
@@ -304,8 +305,8 @@ class JointSearch:
             slope=np.zeros(steps),
             kept=np.zeros(steps),
             cheapest=np.zeros(steps),
-            stack=self._stack,
-            ahead=np.zeros_like(self._stack.ahead),
+            stack=self.stack,
+            ahead=np.zeros_like(self.stack.ahead),
             moves=np.full((team, horizon), -1),
             gaze=np.full((team, horizon), -1),
             place=np.full((team, horizon + 1), -1),

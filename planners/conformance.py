@@ -4,17 +4,56 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
+from dataclasses import fields
 
 import numpy as np
 
-from maps import GeomsimError
+from maps import ConformanceError
+from planners.costs import Cost, Hops
 from planners.policy import Decision, Planner, Policy, PursuerState, SearchProblem, SearchState
 
-__all__ = ["ConformanceError", "check_policy"]
+__all__ = ["check_cost", "check_policy"]
 
 
-class ConformanceError(GeomsimError):
-    """A planner breaks a rule; the message says which one, and in which state."""
+def check_cost(cost: Cost, rng: np.random.Generator, rounds: int = 8) -> None:
+    """Check that a cost heuristic keeps the rules of :data:`planners.Cost` on random hops.
+
+    It must return one finite number for each hop, none below 0, that does not depend on the other hops in the batch
+    nor on how often it is asked, and leave the hops as they were.
+
+    Parameters
+    ----------
+    cost : callable
+        What is checked.
+    rng : Generator
+        Makes the hops.
+    rounds : int
+        Number of batches.
+
+    Raises
+    ------
+    ConformanceError
+        At the first rule that is broken.
+    """
+    who = f"The heuristic {getattr(cost, '__name__', cost)!r}"
+    for k in range(rounds):
+        count, cells = (1, 1) if k == 0 else rng.integers(1, 30, 2).tolist()
+        hops = _random_hops(count, cells, rng, empty=k == 1)
+        kept = copy.deepcopy(hops)
+        values = np.asarray(cost(hops))
+        if values.shape != (count,):
+            raise ConformanceError(f"{who} returns shape {values.shape} for {count} hops; it must be ({count},).")
+        if not (np.isfinite(values).all() and (values >= 0).all()):
+            raise ConformanceError(
+                f"{who} returns {values.min():g} to {values.max():g}; costs are finite and not below 0."
+            )
+        if not all(np.array_equal(getattr(hops, f.name), getattr(kept, f.name)) for f in fields(Hops)):
+            raise ConformanceError(f"{who} changes the hops that it is given.")
+        alone = [
+            np.asarray(cost(Hops(*(getattr(hops, f.name)[i : i + 1] for f in fields(Hops))))) for i in range(count)
+        ]
+        if not np.allclose(np.concatenate(alone), values, rtol=1e-9, atol=1e-12):
+            raise ConformanceError(f"{who} gives a hop another cost in a batch than alone, or when asked again.")
 
 
 def check_policy(planner: Planner, problem: SearchProblem, rng: np.random.Generator, rounds: int = 8) -> None:
@@ -54,6 +93,12 @@ def check_policy(planner: Planner, problem: SearchProblem, rng: np.random.Genera
     )
     if first != again:
         raise ConformanceError(f"{planner!r} decides differently when it is made anew with an equal seed.")
+
+
+def _random_hops(count: int, cells: int, rng: np.random.Generator, *, empty: bool) -> Hops:
+    """Make hops over which pursuers gain probability, or, empty, over cells that hold none."""
+    before = rng.dirichlet(np.ones(cells + 1), count)[:, 1:] * (not empty)
+    return Hops(before, before * rng.uniform(0.0, 1.0, (count, cells)), before[:, 0], rng.uniform(0.1, 30.0, count))
 
 
 def _ask(

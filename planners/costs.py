@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from maps import GeomsimError, nearest
+from maps.errors import enter
 
 __all__ = [
     "COSTS",
@@ -21,6 +22,7 @@ __all__ = [
     "entropy",
     "find_cost",
     "probability",
+    "register_cost",
     "target_probability",
 ]
 
@@ -99,15 +101,30 @@ def _surprise(p: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(-p * np.log(np.where(p > 0, p, 1.0)))
 
 
-COSTS: Mapping[str, Cost] = MappingProxyType(
-    {
-        "entropy": entropy,
-        "target-probability": target_probability,
-        "probability": probability,
-        "distance-over-probability": distance_over_probability,
-    }
-)
+_COSTS: dict[str, Cost] = {
+    "entropy": entropy,
+    "target-probability": target_probability,
+    "probability": probability,
+    "distance-over-probability": distance_over_probability,
+}
+COSTS: Mapping[str, Cost] = MappingProxyType(_COSTS)
 """Every heuristic by its name."""
+
+
+def register_cost(name: str) -> Callable[[Cost], Cost]:
+    """Give a cost heuristic of one's own a name, under which planners and the command line find it; a decorator.
+
+    Raises
+    ------
+    GeomsimError
+        If the name is none, or there is another one of it.
+    """
+
+    def register(cost: Cost) -> Cost:
+        enter(_COSTS, "cost heuristic", name, cost)
+        return cost
+
+    return register
 
 
 def find_cost(name: str) -> Cost:

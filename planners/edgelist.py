@@ -42,7 +42,7 @@ def read_edge_list(path: str | Path) -> SearchGraph:
 
 
 def unit_problem(graph: SearchGraph, pursuers: int) -> SearchProblem:
-    """Return the problem that published results on edge lists are about.
+    """Return the problem that published results on edge lists are about, on a ``graph``, for so many ``pursuers``.
 
     In each step the evader stays or moves to a neighbour, all equally likely; then each pursuer stays or moves; then
     it captures in the cell where it is.

@@ -153,6 +153,17 @@ def lower_bounds(
     at most as probable as that each of its pursuers alone does, added up; each of them can do its best for every time
     (:func:`planners.walks.catch_chances`).
 
+    Parameters
+    ----------
+    problem : SearchProblem
+        Graph, motion, capture and team.
+    starts : sequence of sequence of int
+        For each start the cell of every pursuer, counted from 0.
+    belief : ndarray, shape (N + 1,), optional
+        Where the evader is; by default uniform over the cells without a pursuer.
+    reachable : bool
+        Whether, by default, it is in the part of the graph that the pursuers can reach.
+
     Raises
     ------
     TooLargeError

@@ -126,12 +126,17 @@ def reported_sighting(states: int, where: Iterable[int], hit: float, false: floa
 
 
 def elsewhere(states: int, where: Iterable[int]) -> NDArray[np.float64]:
-    """Return the likelihood, shape (N,), of being told that the evader is not in some states, counted from 0."""
+    """Return the likelihood, shape (N,), of being told that the evader is not ``where``, in some of N ``states``.
+
+    States count from 0.
+    """
     return reported_sighting(states, where, 0.0, 1.0)
 
 
 def region_belief(graph: SearchGraph, cells: Iterable[int], inside: float = 1.0) -> NDArray[np.float64]:
-    """Return a prior: in some cells with probability ``inside``, anywhere else with the rest; shape (N + 1,).
+    """Return a prior: in some ``cells`` with probability ``inside``, anywhere else in ``graph`` with the rest.
+
+    Its shape is (N + 1,); cells count from 0.
 
     It is also the belief after a lost sighting, with the cells that the evader can have got to. (If it was lost in one
     cell, that is :func:`planners.point_belief`, and its motion model carries it on.)

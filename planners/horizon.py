@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from planners.beam import BeamSearch
 from planners.branching import Certificate, JointSearch
+from planners.clock import FOREVER, Clock
 from planners.pathbeam import PathBeam
 from planners.policy import SearchProblem
 from planners.simulation import SearchModel
@@ -39,20 +40,23 @@ class Sequential:
         Weight of each belief step relative to the one before it.
     patience : int
         Time between two searches, belief steps.
+    seconds : float
+        Thinking time for one decision; with a limit, results depend on the machine.
 
     Raises
     ------
     PlannerError
-        If a number is below 1, or the discount outside (0, 1].
+        If a number is below 1, or time or discount below 0.
     """
 
     horizon: int = 10
     discount: float = 1.0
     patience: int = 1
+    seconds: float = float("inf")
 
     def __post_init__(self) -> None:
         at_least(1, horizon=self.horizon, patience=self.patience)
-        at_least(0, discount=self.discount)
+        at_least(0, discount=self.discount, seconds=self.seconds)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
         """Prepare a policy; nothing in it is random."""
@@ -65,12 +69,13 @@ class Sequential:
             moves: Sequence[int],
             done: Sequence[int],
             announced: Sequence[Sequence[int]],  # noqa: ARG001  (every plan starts from nothing)
+            clock: Clock,
         ) -> Sequence[Sequence[int]]:
             if search is None:
-                return beam.respond(belief, moves, done, (), rounds=0)
-            return respond(search, belief, moves, done, (), rounds=0)
+                return beam.respond(belief, moves, done, (), rounds=0, clock=clock)
+            return respond(search, belief, moves, done, (), rounds=0, clock=clock)
 
-        return TeamPolicy(model, allocate, self.patience)
+        return TeamPolicy(model, allocate, self.patience, self.seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +95,8 @@ class BestResponse:
         Weight of each belief step relative to the one before it.
     patience : int
         Time between two searches, belief steps.
+    seconds : float
+        Thinking time for one decision; with a limit, results depend on the machine.
     width : int
         Most paths that the search for an answer follows of those that come to a checkpoint at about the same time;
         0 lets it find the best answer there is where states are cells, and stands for 4 where they are parts of them,
@@ -98,27 +105,39 @@ class BestResponse:
     Raises
     ------
     PlannerError
-        If a number is below 1, or the discount or width below 0.
+        If a number is below 1, or time, discount or width below 0.
     """
 
     horizon: int = 10
     rounds: int = 10
     discount: float = 1.0
     patience: int = 1
+    seconds: float = float("inf")
     width: int = 0
 
     def __post_init__(self) -> None:
         at_least(1, horizon=self.horizon, rounds=self.rounds, patience=self.patience)
-        at_least(0, discount=self.discount, width=self.width)
+        at_least(0, discount=self.discount, seconds=self.seconds, width=self.width)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
         """Prepare a policy; nothing in it is random."""
         model = SearchModel(problem)
-        if self.width or problem.space is not None:
-            beam = PathBeam(model, horizon=self.horizon, discount=self.discount, width=self.width or _WIDTH)
-            return TeamPolicy(model, lambda *now: beam.respond(*now, rounds=self.rounds), self.patience)
-        search = JointSearch(model, horizon=self.horizon, discount=self.discount)
-        return TeamPolicy(model, lambda *now: respond(search, *now, rounds=self.rounds), self.patience)
+        beam = PathBeam(model, horizon=self.horizon, discount=self.discount, width=self.width or _WIDTH)
+        exact = self.width == 0 and problem.space is None
+        search = JointSearch(model, horizon=self.horizon, discount=self.discount) if exact else None
+
+        def answer(
+            belief: NDArray[np.float64],
+            moves: Sequence[int],
+            done: Sequence[int],
+            announced: Sequence[Sequence[int]],
+            clock: Clock,
+        ) -> Sequence[Sequence[int]]:
+            if search is None:
+                return beam.respond(belief, moves, done, announced, rounds=self.rounds, clock=clock)
+            return respond(search, belief, moves, done, announced, rounds=self.rounds, clock=clock)
+
+        return TeamPolicy(model, answer, self.patience, self.seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +155,7 @@ class BranchAndBound:
     nodes : int
         The proof is given up after this many nodes.
     seconds : float
-        It is given up after this time; then results depend on the machine.
+        Thinking time for one decision; with a limit, results depend on the machine.
     discount : float
         Weight of each belief step relative to the one before it.
     patience : int
@@ -167,7 +186,7 @@ class CertifiedPolicy(TeamPolicy):
     """The policy of :class:`BranchAndBound`; ``certificate`` belongs to the last plan, None before the first."""
 
     def __init__(self, model: SearchModel, planner: BranchAndBound) -> None:
-        super().__init__(model, self._certify, planner.patience)
+        super().__init__(model, self._certify, planner.patience, planner.seconds)
         horizon, discount = planner.horizon, planner.discount
         self.limits = planner
         self.joint = JointSearch(model, horizon=horizon, discount=discount)
@@ -180,11 +199,11 @@ class CertifiedPolicy(TeamPolicy):
         moves: Sequence[int],
         done: Sequence[int],
         announced: Sequence[Sequence[int]],
+        clock: Clock,
     ) -> Sequence[Sequence[int]]:
-        plan = self.beam.run(belief, moves, done, announced).moves
-        plan = respond(self.joint, belief, moves, done, plan, rounds=10)
-        limits = self.limits
-        self.certificate = self.joint.run(belief, moves, done, plan, nodes=limits.nodes, seconds=limits.seconds)
+        plan = self.beam.run(belief, moves, done, announced, clock).moves
+        plan = respond(self.joint, belief, moves, done, plan, rounds=10, clock=clock)
+        self.certificate = self.joint.run(belief, moves, done, plan, nodes=self.limits.nodes, clock=clock)
         return self.certificate.moves
 
 
@@ -196,6 +215,7 @@ def respond(
     announced: Sequence[Sequence[int]],
     *,
     rounds: int,
+    clock: Clock = FOREVER,
 ) -> tuple[tuple[int, ...], ...]:
     """Return the plan of sequential allocation after some rounds of best responses.
 
@@ -208,20 +228,22 @@ def respond(
         better of the two results returned.
     rounds : int
         Rounds of answers at most.
+    clock : Clock
+        Ends the search.
     """
     team = range(len(moves))
     plans: tuple[tuple[int, ...], ...] = ((),) * len(moves)
     for i in team:
-        plans = search.run(belief, moves, done, plans, who=[i], absent=team[i + 1 :]).moves
+        plans = search.run(belief, moves, done, plans, who=[i], absent=team[i + 1 :], clock=clock).moves
     results = [plans] + ([tuple(map(tuple, announced))] if any(announced) else [])
     for k, plans in enumerate(results):
         value = search.value(belief, moves, done, plans)
         for _ in range(rounds):
             before = value
             for i in team:
-                answer = search.run(belief, moves, done, plans, who=[i])
+                answer = search.run(belief, moves, done, plans, who=[i], clock=clock)
                 plans, value = answer.moves, answer.value
-            if value <= before * (1.0 + 1e-9):
+            if value <= before * (1.0 + 1e-9) or clock.over():
                 break
         results[k] = plans
     return max(results, key=lambda plan: search.value(belief, moves, done, plan))

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "ANYWHERE",
     "Look",
     "Motion",
     "Path",
@@ -29,6 +30,7 @@ __all__ = [
     "new_path",
     "new_stack",
     "take",
+    "values_back",
     "values_from",
     "weigh",
 ]
@@ -36,6 +38,9 @@ __all__ = [
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 Mask = NDArray[np.bool_]
+
+# The goal of a path that may end in any cell, or between two.
+ANYWHERE = -1
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
@@ -182,8 +187,14 @@ def values_from(weight: Array, kept: Array, motion: Motion, worth: Array) -> Non
 
     It is the weight of the step less what those looks, leaving ``kept`` (H, N), would get for that mass later.
     """
+    worth[len(kept)] = weight[len(kept)]
+    values_back(weight, kept, motion, worth)
+
+
+@compiled
+def values_back(weight: Array, kept: Array, motion: Motion, worth: Array) -> None:
+    """Write all rows of ``worth`` before the last one, as :func:`values_from` does; the last row is known."""
     horizon, states = kept.shape
-    worth[horizon] = weight[horizon]
     for t in range(horizon - 1, -1, -1):
         for s in range(states):
             total = 0.0
@@ -247,6 +258,7 @@ def relax(
     ways: Ways,
     stack: Stack,
     bounds: Array,
+    goal: int,
 ) -> None:
     """Bound from above what one pursuer at a checkpoint can still get, for each of its moves.
 
@@ -281,11 +293,14 @@ def relax(
                 if k + steps[m] <= horizon:
                     reach[k + steps[m], target[m]] = True
     ahead[horizon] = 0.0
+    if goal >= 0:
+        ahead[horizon] = -np.inf
+        ahead[horizon, goal] = 0.0
     for k in range(horizon - 1, t - 1, -1):
         for c in range(cells):
             if not reach[k, c]:
                 continue
-            best = -1.0
+            best = -np.inf
             for m in range(start[c], start[c + 1]):
                 value, end = 0.0, k + steps[m]
                 for j in range(k, min(end, horizon)):
@@ -293,8 +308,10 @@ def relax(
                     if j > t:
                         for e in range(ptr[m, j - k], ptr[m, j - k + 1]):
                             value -= both[e] * free[j, tail[e]] * priced[j, head[e]]
-                if end < horizon:
+                if end <= horizon:
                     value += ahead[end, target[m]]
+                elif goal >= 0:
+                    value = -np.inf
                 if k == t:
                     bounds[m - start[c]] = value
                 best = max(best, value)
@@ -312,6 +329,7 @@ def best_path(
     ways: Ways,
     stack: Stack,
     path: Path,
+    goal: int,
     best: float,
     slack: float,
     budget: int,
@@ -326,6 +344,8 @@ def best_path(
         The looks that are fixed, and what mass is worth beside them.
     path : Path
         Overwritten from step ``t`` on if a path is found that adds more than ``best``.
+    goal : int
+        The cell at whose checkpoint the path must be at the end, or :data:`ANYWHERE`.
     best : float
         What the path adds that is known already.
     slack : float
@@ -346,7 +366,7 @@ def best_path(
             stack.used[level] = False
             relax(
                 stack.when[level], stack.where[level], stack.free[level], kept, worth, motion, looks, ways, stack,
-                stack.bounds[level],
+                stack.bounds[level], goal,
             )  # fmt: skip
         fresh = False
         now, here = stack.when[level], stack.where[level]

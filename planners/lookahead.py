@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from planners.clock import FOREVER, Clock
 from planners.costs import Cost, Hops, find_cost
 from planners.policy import Decision, PursuerState, SearchProblem, SearchState
 from planners.simulation import SearchModel
@@ -47,21 +48,26 @@ class Decoupled:
         Name of a heuristic in :data:`planners.COSTS`.
     depth : int
         Number of hops to look ahead, 1 to 100.
+    seconds : float
+        Thinking time for one decision, shared alike by the pursuers that have yet to decide: whose time is over looks
+        less far ahead. With a limit, results depend on the machine.
 
     Raises
     ------
     CostError
         If there is no such heuristic.
     PlannerError
-        If the depth is below 1 or above 100.
+        If the depth is below 1 or above 100, or the time below 0.
     """
 
     cost: str = "entropy"
     depth: int = 5
+    seconds: float = float("inf")
 
     def __post_init__(self) -> None:
         find_cost(self.cost)
         at_least(1, depth=self.depth)
+        at_least(0, seconds=self.seconds)
         at_most(DEEPEST, depth=self.depth)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> DecoupledPolicy:
@@ -74,7 +80,7 @@ class Decoupled:
         """
         model = SearchModel(problem)
         check_depth(model, self.depth)
-        return DecoupledPolicy(model, find_cost(self.cost), self.depth, rng)
+        return DecoupledPolicy(model, find_cost(self.cost), self.depth, self.seconds, rng)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,11 +90,13 @@ class DecoupledPolicy:
     model: SearchModel
     cost: Cost
     depth: int
+    seconds: float
     rng: np.random.Generator = field(repr=False)
 
     def decide(self, state: SearchState) -> Sequence[Decision | None]:
         """Return a path of ``depth`` cells for each pursuer at a checkpoint, None for the others."""
-        team = state.pursuers
+        team, clock = state.pursuers, Clock(self.seconds)
+        waiting = sum(pursuer.target is None for pursuer in team)
         decisions: list[Decision | None] = [None] * len(team)
         later = self._unseen_by_later(team)
         earlier = self.model.unseen([])
@@ -96,7 +104,9 @@ class DecoupledPolicy:
             now = pursuer
             if pursuer.target is None:
                 unseen = self.model.together(earlier, later[i])
-                decision = self._best_path(i, pursuer.cell, state.belief[1:], unseen)
+                share = Clock(clock.left / waiting)
+                waiting -= 1
+                decision = self._best_path(i, pursuer.cell, state.belief[1:], unseen, share)
                 decisions[i] = decision
                 now = self._under_way(i, pursuer.cell, decision.path[0])
             earlier = self.model.together(earlier, self.model.unseen([self.model.timeline(i, now)]))
@@ -118,10 +128,12 @@ class DecoupledPolicy:
         steps = self.model.moves[pursuer].steps[self.model.move(cell, target)]
         return PursuerState(cell, target, float(steps) * self.model.step)
 
-    def _best_path(self, pursuer: int, cell: int, belief: NDArray[np.float64], unseen: NDArray[np.float64]) -> Decision:
+    def _best_path(
+        self, pursuer: int, cell: int, belief: NDArray[np.float64], unseen: NDArray[np.float64], clock: Clock
+    ) -> Decision:
         if len(self.model.graph.neighbours(cell)) == 0:
             return Decision((cell,))
-        tree = grow_tree(self.model, pursuer, cell, belief, unseen, self.cost, self.depth)
+        tree = grow_tree(self.model, pursuer, cell, belief, unseen, self.cost, self.depth, clock)
         total = tree.costs[-1]
         best = total.min()
         leaf = int(self.rng.choice(np.flatnonzero(total <= best + TIE * abs(best))))
@@ -177,6 +189,7 @@ def grow_tree(
     unseen: NDArray[np.float64],
     cost: Cost,
     depth: int,
+    limit: Clock = FOREVER,
 ) -> PathTree:
     """Simulate the belief along every walk of ``depth`` hops, common beginnings once.
 
@@ -196,24 +209,29 @@ def grow_tree(
         The heuristic.
     depth : int
         Number of hops.
+    limit : Clock
+        Hops that would take longer than this, by the time that shorter walks took, are left out; but not the first.
     """
     graph, moves = model.graph, model.moves[pursuer]
     tree = PathTree([], [], [])
     cells, total = np.array([cell], dtype=np.intp), np.zeros(1)
     beliefs, clock = belief[np.newaxis], np.zeros(1, dtype=np.intp)
-    for _ in range(depth):
+    before = limit.left
+    for level in range(depth):
         count = graph.degree[cells]
+        if level > 0 and (before - limit.left) * count.sum() / len(cells) > limit.left:
+            break
         parent = np.repeat(np.arange(len(cells)), count)
         edge = np.arange(len(parent)) + np.repeat(graph.indptr[cells] - (np.cumsum(count) - count), count)
         move = edge + cells[parent] + 1
         order = np.argsort(-moves.steps[move], kind="stable")
         parent, edge, move = parent[order], edge[order], move[order]
         cells = graph.indices[edge]
-        before = beliefs[parent]
+        set_out = beliefs[parent]
         beliefs = _simulate(model, beliefs, parent, clock, moves.steps[move], moves.views[move], unseen)
         clock = clock[parent] + moves.steps[move]
-        chance = model.looks.chance(before, moves.views[move, -1])
-        total = total[parent] + cost(Hops(before, beliefs, chance, graph.length[edge]))
+        chance = model.looks.chance(set_out, moves.views[move, -1])
+        total = total[parent] + cost(Hops(set_out, beliefs, chance, graph.length[edge]))
         tree.cells.append(cells)
         tree.parents.append(parent)
         tree.costs.append(total)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from planners.clock import FOREVER, Clock
 from planners.simulation import SearchModel
 
 __all__ = ["PathBeam"]
@@ -76,6 +77,7 @@ class PathBeam:
         announced: Plans,
         *,
         rounds: int,
+        clock: Clock = FOREVER,
     ) -> Plans:
         """Return the plan of sequential allocation, or the one announced, after some rounds of responses.
 
@@ -89,22 +91,26 @@ class PathBeam:
             Moves that each pursuer means to begin; where there are some, they are what is improved.
         rounds : int
             Rounds of answers at most.
+        clock : Clock
+            No round is begun after its end.
         """
         team = range(len(moves))
         if any(announced):
             gaze = np.array([self._gaze(i, moves, done, announced[i]) for i in team])
             best = _Answer(self._worth(belief, gaze), gaze, list(announced))
         else:
-            best = self._allocate(belief, moves, done)
+            best = self._allocate(belief, moves, done, clock)
         for _ in range(rounds):
             before = best.value
             for i in team:
                 best = self._answer(i, belief, moves, done, best)
-            if best.value <= before * (1.0 + TIE):
+            if best.value <= before * (1.0 + TIE) or clock.over():
                 break
         return best.plans
 
-    def _allocate(self, belief: NDArray[np.float64], moves: Sequence[int], done: Sequence[int]) -> _Answer:
+    def _allocate(
+        self, belief: NDArray[np.float64], moves: Sequence[int], done: Sequence[int], clock: Clock
+    ) -> _Answer:
         """Let one pursuer after another take its path, the first one beginning with each of its moves; take the best.
 
         Where the first one goes decides most of what the others can do, and no single answer changes both.
@@ -118,6 +124,8 @@ class PathBeam:
             for i in range(1, len(moves)):
                 plan = self._answer(i, belief, moves, done, plan)
             found.append(plan)
+            if clock.over():
+                break
         return max(found, key=lambda plan: plan.value)
 
     def _answer(

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from planners.kernels import (
+    ANYWHERE,
     Array,
     Look,
     Mask,
@@ -178,7 +179,7 @@ def answer(level: int, slack: float, task: Task, nodes: Nodes, room: Room) -> An
             path = Path(room.moves[p], room.gaze[p], room.place[p])
             most[p] = best_path(
                 t, cell, room.left, room.worth, task.motion, task.looks, ways_of(p, task), room.stack, path,
-                known, slack, LONGEST,
+                ANYWHERE, known, slack, LONGEST,
             )[1]  # fmt: skip
         if p == q:
             own = most[p]
@@ -295,7 +296,7 @@ def open_node(level: int, most: float, best: float, task: Task, nodes: Nodes, ro
     frame, bounds = nodes.frame[level], nodes.bounds[level]
     relax(
         t, cell, nodes.free[level], nodes.kept[frame], nodes.worth[frame], task.motion, task.looks, ways_of(q, task),
-        room.stack, bounds,
+        room.stack, bounds, ANYWHERE,
     )  # fmt: skip
     for i in range(len(bounds)):
         bounds[i] += nodes.value[level] + nodes.later[level]
@@ -320,7 +321,7 @@ def relax_later(level: int, task: Task, nodes: Nodes, room: Room) -> float:
             disperse(free[k], free[k + 1], task.motion, room.left[k])
         relax(
             t, cell, free, room.left, room.worth, task.motion, task.looks, ways_of(p, task), room.stack,
-            room.stack.bounds[0],
+            room.stack.bounds[0], ANYWHERE,
         )  # fmt: skip
         total += room.stack.ahead[t, cell]
     return total
@@ -365,7 +366,7 @@ def answer_last(best: float, task: Task, room: Room) -> float:
     path = Path(room.moves[p], room.gaze[p], room.place[p])
     wanted = best * (1.0 + EQUAL) - value
     gain, bound, _ = best_path(
-        t, cell, left, room.worth, task.motion, task.looks, ways_of(p, task), room.stack, path, wanted, 0.0,
+        t, cell, left, room.worth, task.motion, task.looks, ways_of(p, task), room.stack, path, ANYWHERE, wanted, 0.0,
         LONGEST_LAST,
     )  # fmt: skip
     if bound > gain:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from types import MappingProxyType
 from typing import Any
 
 from maps import nearest
+from maps.errors import enter
 from planners.baselines import Random, Stationary
 from planners.beam import Beam
 from planners.costs import find_cost
@@ -15,10 +16,11 @@ from planners.coupled import Coupled
 from planners.horizon import BestResponse, BranchAndBound, Sequential
 from planners.lookahead import Decoupled
 from planners.policy import Planner
+from planners.refining import Refined
 from planners.rollout import Rollout
 from planners.team import PlannerError
 
-__all__ = ["PLANNERS", "PlannerEntry", "make_planner", "parse_method"]
+__all__ = ["PLANNERS", "PlannerEntry", "make_planner", "parse_method", "register_planner"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +50,11 @@ class PlannerEntry:
         return tuple(f.name for f in fields(self.make))  # type: ignore[arg-type]  # every planner is a dataclass
 
 
-def _table(*entries: PlannerEntry) -> Mapping[str, PlannerEntry]:
-    return MappingProxyType({entry.name: entry for entry in entries})
+def _table(*entries: PlannerEntry) -> dict[str, PlannerEntry]:
+    return {entry.name: entry for entry in entries}
 
 
-PLANNERS: Mapping[str, PlannerEntry] = _table(
+_PLANNERS = _table(
     PlannerEntry(
         "decoupled",
         Decoupled,
@@ -78,6 +80,12 @@ PLANNERS: Mapping[str, PlannerEntry] = _table(
         "after the paper; judged against sequential allocation and branch and bound in the benchmark",
     ),
     PlannerEntry(
+        "refined",
+        Refined,
+        "beam search, then each robot's path improved window by window, the rest kept; slow, for the best plans",
+        "local search over whole plans; each window by branch and bound",
+    ),
+    PlannerEntry(
         "sequential",
         Sequential,
         "one robot after another takes its best path over a fixed time",
@@ -98,7 +106,45 @@ PLANNERS: Mapping[str, PlannerEntry] = _table(
     PlannerEntry("random", Random, "each robot goes to a random neighbouring cell", "the paper, Section V-A"),
     PlannerEntry("stationary", Stationary, "each robot stays in its starting cell", "the paper, Section V-A"),
 )
+PLANNERS: Mapping[str, PlannerEntry] = MappingProxyType(_PLANNERS)
 """Every planner by its name."""
+
+
+def register_planner(
+    name: str, *, summary: str = "", source: str = "our own"
+) -> Callable[[Callable[..., Planner]], Callable[..., Planner]]:
+    """Give a planner of one's own a name, under which the command line finds it; a decorator of a dataclass.
+
+    Parameters
+    ----------
+    name : str
+        Its name; ``name-cost-depth`` then names it with a heuristic and a depth, if those are among its fields.
+    summary, source : str
+        What ``geomsim planners`` tells of it.
+
+    Raises
+    ------
+    GeomsimError
+        If the name is none, or there is another one of it.
+    PlannerError
+        If the planner is no dataclass, whose fields are its parameters.
+    """
+
+    def register(make: Callable[..., Planner]) -> Callable[..., Planner]:
+        if not _has_fields(make):
+            raise PlannerError(f"The planner {name!r} must be a dataclass, whose fields are its parameters.")
+        enter(_PLANNERS, "planner", name, PlannerEntry(name, make, summary or _first_line(make), source))
+        return make
+
+    return register
+
+
+def _has_fields(thing: object) -> bool:
+    return isinstance(thing, type) and is_dataclass(thing)
+
+
+def _first_line(thing: object) -> str:
+    return (thing.__doc__ or "").strip().partition("\n")[0]
 
 
 def make_planner(name: str, **parameters: Any) -> Planner:
@@ -125,7 +171,8 @@ def make_planner(name: str, **parameters: Any) -> Planner:
     given = {key: value for key, value in parameters.items() if value is not None}
     for key, value in given.items():
         if key not in entry.parameters:
-            takes = " and ".join(entry.parameters) or "no parameter"
+            *others, last = entry.parameters or ("no parameter",)
+            takes = f"{', '.join(others)} and {last}" if others else last
             raise PlannerError(f"The planner {name!r} takes {takes}; got {key} = {value!r}.")
     return entry.make(**given)
 

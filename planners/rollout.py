@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from planners.clock import Clock
 from planners.lookahead import Decoupled
 from planners.policy import Planner, SearchProblem
-from planners.running import run_policy
+from planners.running import Run, run_policy
 from planners.simulation import SearchModel
 from planners.team import TeamPolicy, at_least
 
@@ -41,19 +43,23 @@ class Rollout:
         Belief steps that each is run for at most; what is left then counts at the rate so far.
     patience : int
         Time between two searches, belief steps.
+    seconds : float
+        Thinking time for one decision; with a limit, results depend on the machine.
 
     Raises
     ------
     PlannerError
-        If the set is empty or a number below 1.
+        If the set is empty, a number below 1 or the time below 0.
     """
 
     bases: tuple[Planner, ...] = BASES
     horizon: int = 300
     patience: int = 5
+    seconds: float = float("inf")
 
     def __post_init__(self) -> None:
         at_least(1, bases=len(self.bases), horizon=self.horizon, patience=self.patience)
+        at_least(0, seconds=self.seconds)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:
         """Prepare a policy; each policy of the set gets a generator of its own."""
@@ -65,13 +71,17 @@ class Rollout:
             moves: Sequence[int],
             done: Sequence[int],
             announced: Sequence[Sequence[int]],
+            clock: Clock,
         ) -> Sequence[Sequence[int]]:
             firsts = [announced, ()] if any(announced) else [()]
-            runs = [
-                run_policy(model, policy, belief, moves, done, first=first, residue=1e-6, longest=self.horizon)
-                for first in firsts
-                for policy in policies
-            ]
+            runs: list[Run] = []
+            for first, policy in itertools.product(firsts, policies):
+                if runs and clock.over():
+                    break
+                run = run_policy(
+                    model, policy, belief, moves, done, first=first, residue=1e-6, longest=self.horizon, clock=clock
+                )
+                runs.append(run)
             return min(runs, key=lambda run: run.expected_steps()).moves
 
-        return TeamPolicy(model, search, self.patience)
+        return TeamPolicy(model, search, self.patience, self.seconds)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from planners.clock import FOREVER, Clock
 from planners.policy import Policy, SearchState
 from planners.simulation import SearchModel
 
@@ -54,6 +55,7 @@ def run_policy(
     first: Sequence[Sequence[int]] = (),
     residue: float,
     longest: int,
+    clock: Clock = FOREVER,
 ) -> Run:
     """Carry out a policy in belief steps until the evader is as good as caught.
 
@@ -73,13 +75,15 @@ def run_policy(
         Ends when the probability of no capture is below this.
     longest : int
         Ends after this many belief steps.
+    clock : Clock
+        Ends it too, but not before the first step.
     """
     on, gone = list(moves), list(done)
     forced = [list(plan) for plan in first] if first else [[] for _ in on]
     begun: list[list[int]] = [[] for _ in on]
     plans: list[tuple[int, ...]] = [()] * len(on)
     free, curve, seconds = belief.copy(), [float(belief.sum())], []
-    while curve[-1] > residue and len(curve) <= longest:
+    while curve[-1] > residue and len(curve) <= longest and not (len(curve) > 1 and clock.over()):
         waiting = [i for i, table in enumerate(model.moves) if gone[i] >= table.steps[on[i]]]
         for i in waiting:
             if forced[i]:
@@ -88,9 +92,9 @@ def run_policy(
         pursuers = tuple(model.pursuer_state(i, move, k) for i, (move, k) in enumerate(zip(on, gone, strict=True)))
         if any(p.target is None for p in pursuers):
             told = np.concatenate([[1.0 - free.sum()], free])
-            clock = time.perf_counter()
+            asked = time.perf_counter()
             decisions = policy.decide(SearchState((len(curve) - 1) * model.step, told, pursuers, tuple(plans)))
-            seconds.append(time.perf_counter() - clock)
+            seconds.append(time.perf_counter() - asked)
             for i, decision in enumerate(decisions):
                 if decision is not None:
                     on[i], gone[i] = model.move(pursuers[i].cell, decision.path[0]), 0

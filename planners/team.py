@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from maps import GeomsimError
+from planners.clock import Clock
 from planners.policy import Decision, SearchState
 from planners.simulation import SearchModel
 
@@ -46,6 +47,7 @@ class TeamSearch(Protocol):
         moves: Sequence[int],
         done: Sequence[int],
         announced: Sequence[Sequence[int]],
+        clock: Clock,
     ) -> Sequence[Sequence[int]]:
         """Return the moves that each pursuer begins.
 
@@ -57,6 +59,8 @@ class TeamSearch(Protocol):
             The move that each pursuer is on, and how many of its steps are done.
         announced : sequence of sequence of int
             Moves that each pursuer means to begin, from an earlier plan.
+        clock : Clock
+            Ends the search: it returns the best plan that it has.
         """
         ...
 
@@ -65,11 +69,11 @@ class TeamPolicy:
     """Follows a plan for ``patience`` belief steps, or until the belief is not what it foresaw, then plans anew.
 
     "Not caught yet" is all that a team learns, and its plan has taken that into account; so there is nothing to plan
-    anew for but a better plan, a measurement, and the times that things take in the world.
+    anew for but a better plan, a measurement, and the times that things take in the world. A plan may take ``seconds``.
     """
 
-    def __init__(self, model: SearchModel, search: TeamSearch, patience: int) -> None:
-        self.model, self.search, self.patience = model, search, patience
+    def __init__(self, model: SearchModel, search: TeamSearch, patience: int, seconds: float) -> None:
+        self.model, self.search, self.patience, self.seconds = model, search, patience, seconds
         self._searched = -np.inf
         self._foreseen: NDArray[np.float64] = np.empty((0, model.states))
 
@@ -92,10 +96,11 @@ class TeamPolicy:
         return bool(np.abs(state.belief[1:] - self._foreseen[round(elapsed)]).sum() > SURPRISE)
 
     def _plan(self, state: SearchState) -> list[list[int]]:
+        clock = Clock(self.seconds)
         under_way = [self.model.under_way(i, pursuer) for i, pursuer in enumerate(state.pursuers)]
         moves, done = [move for move, _ in under_way], [k for _, k in under_way]
         announced = [self._moves(i, moves[i], plan) for i, plan in enumerate(state.plans)]
-        plans = self.search(state.belief[1:], moves, done, announced)
+        plans = self.search(state.belief[1:], moves, done, announced, clock)
         self._searched = state.time
         self._foreseen = self.model.foresee(state.belief[1:], moves, done, plans, self.patience)
         return [[int(t) for t in self.model.moves[i].target[list(plan)]] for i, plan in enumerate(plans)]

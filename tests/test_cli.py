@@ -221,6 +221,12 @@ def test_listings(call, command: str) -> None:
         (["run", "house", "--speedup", "2", "--length", "9"], "give one of them"),
         (["convert", "house", "house.xyz"], "house.xyz"),
         (["predict", "house", "--start", "12"], "numbered from 1 to 9"),
+        (["export", "none.npz"], "none.npz"),
+        (["export", "none.npz", "--seed", "2"], "leave out --seed"),
+        (["export", "house", "--duration", "0"], "must be positive"),
+        (["export", "house", "--duration", "1e308"], "recorded positions"),
+        (["export", "house", "--pixel", "1e-9"], "resolution"),
+        (["export", "offise"], "office"),
         (["dance"], "dance"),
     ],
 )
@@ -290,6 +296,36 @@ def test_a_scenario_may_begin_with_a_byte_order_mark(call) -> None:
     Path("s.toml").write_bytes(b"\xef\xbb\xbfplan = 'house'\r\ntime_limit = 1\r\n")
     code, _, err = call("run", "--scenario", "s.toml", "--no-video", "--json")
     assert (code, err) == (0, "")
+
+
+def test_help_waits_for_no_library() -> None:
+    """What takes long to load is loaded by the command that needs it; so ``geomsim --help`` is there at once."""
+    code = "import sys; from geomsim.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n"
+    code += (
+        "print(sorted({m.partition('.')[0] for m in sys.modules} & set('numpy cv2 shapely maps scipy numba'.split())))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert done.stdout.endswith("\n[]\n")
+
+
+@pytest.mark.parametrize("command", ["--help", "run --help"])
+def test_help_may_be_cut_off(command: str, tmp_path: Path) -> None:
+    python = f"{shlex.quote(sys.executable)} -c 'from geomsim.cli import main; main()' {command}"
+    done = subprocess.run(
+        ["bash", "-c", f"set -o pipefail; {python} | head -c 0"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("text", ["a = " + "[" * 20_000, "seed = " + "1" * 5000, "seed = 1\nseed = 2", "plan = 'hou"])

@@ -55,7 +55,7 @@ def test_command(command: str, folder: Path) -> None:
 
 
 def test_there_is_something_to_try() -> None:
-    assert [len(blocks) for blocks in (COMMANDS, PROGRAMS, PRINTED, PLANS, SCENARIOS)] == [8, 1, 1, 1, 1]
+    assert [len(blocks) for blocks in (COMMANDS, PROGRAMS, PRINTED, PLANS, SCENARIOS)] == [9, 1, 1, 1, 1]
 
 
 @pytest.mark.parametrize("program", PROGRAMS)

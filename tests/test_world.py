@@ -144,3 +144,13 @@ def test_sight_agrees_with_shapely() -> None:
 def test_a_useless_sensor_is_refused(sensor: dict[str, float]) -> None:
     with pytest.raises(GeomsimError):
         Sensor(**sensor)
+
+
+@pytest.mark.parametrize("bodies", [1, 2, 3])
+def test_positions_that_were_asked_for_stay_what_they_were(bodies: int) -> None:
+    world = World(np.array([[[0.0, 0.0], [9.0, 0.0]]]), np.tile([[4.0, 5.0]], (bodies, 1)), np.full(bodies, 0.2))
+    before, wanted = world.positions, np.full((bodies, 2), 0.5)
+    for _ in range(3):
+        world.step(wanted, 0.1)
+    assert before.tolist() == [[4.0, 5.0]] * bodies
+    assert (world.positions > 4.05).all()

@@ -10,12 +10,9 @@ __all__ = ["absorb"]
 
 Index = NDArray[np.intp]
 
-TINY = 4.0  # side of the smallest square cell, in radii of the robot
-NARROW = 1.5  # half the width of the narrowest cell, in radii of the robot
 
-
-def absorb(faces: Faces, owner: Index, radius: float) -> Index:
-    """Give every cell that is too small for a robot to the neighbour it has most open boundary with, smallest first.
+def absorb(faces: Faces, owner: Index, side: float, width: float) -> Index:
+    """Give every cell that is too small or narrow to the neighbour it has most open boundary with, smallest first.
 
     Parameters
     ----------
@@ -23,8 +20,10 @@ def absorb(faces: Faces, owner: Index, radius: float) -> Index:
         Faces of the plan.
     owner : ndarray of int, shape (F,)
         Cell of each face.
-    radius : float
-        Of the robot, metres.
+    side : float
+        Of the smallest square cell, metres.
+    width : float
+        Of the narrowest cell, metres.
 
     Returns
     -------
@@ -34,7 +33,7 @@ def absorb(faces: Faces, owner: Index, radius: float) -> Index:
     owner = owner.copy()
     cells = [shapely.coverage_union_all(faces.polygons[owner == k]) for k in range(owner.max() + 1)]
     area = shapely.area(cells)
-    small = (area < (TINY * radius) ** 2) | shapely.is_empty(shapely.buffer(cells, -NARROW * radius))
+    small = (area < side**2) | shapely.is_empty(shapely.buffer(cells, -width / 2))
     near: list[dict[int, float]] = [{} for _ in cells]
     apart: list[set[int]] = [set() for _ in cells]
     for (i, j), border in faces.borders.items():

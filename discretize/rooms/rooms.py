@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 
 from discretize.partition import Partition
+from discretize.rooms.annexes import annex
 from discretize.rooms.bends import diagonals
 from discretize.rooms.candidates import candidate_cuts
 from discretize.rooms.faces import GRID, arrangement
@@ -16,6 +17,12 @@ from discretize.rooms.structure import structure
 from maps import FloorPlan
 
 __all__ = ["room_cells"]
+
+# In a scan of a furnished place, radii of the robot:
+AISLE = 6.0  # what is narrower lies between pieces of furniture; hallways are wider
+ROOM = 8.0  # width of the narrowest room
+OFFICE = 16.0  # side of the smallest room that may be narrower, if it were square
+LEAF = 6.0  # width of the widest door
 
 
 def room_cells(
@@ -34,7 +41,7 @@ def room_cells(
         What to cut. Its doors are boundaries of cells.
     tolerance : float
         Largest share of a cell's convex hull that may lie outside the cell, and of pairs of its points that may not
-        see each other. Twice as much in scans of furnished places.
+        see each other. Three times as much in scans of furnished places.
     radius : float
         Of the robot, metres: what it cannot enter is no cell of its own.
     rng : numpy.random.Generator or None
@@ -42,8 +49,8 @@ def room_cells(
     """
     rng = np.random.default_rng(0) if rng is None else rng
     scan = any(repair.kind == "removed furniture" for repair in plan.repairs)
-    allowed = 2 * tolerance if scan else tolerance
-    limits = Limits(1 - allowed, 1 - allowed, 0.6, 0.3) if scan else Limits(1 - allowed, 1 - allowed, 0.7, 0.4)
+    allowed = 3 * tolerance if scan else tolerance
+    limits = Limits(1 - allowed, 1 - allowed, 0.5, 0.3) if scan else Limits(1 - allowed, 1 - allowed, 0.5, 0.4)
     frame = frame_of(plan.space)
     own, *lines = shapely.set_precision([frame.turned(part) for part in (plan.space, *plan.doors)], GRID)
     space = structure(own, radius if scan else radius / 2, 4 * radius, 25 * radius if scan else 0.0, lines)
@@ -57,5 +64,7 @@ def room_cells(
     owner = np.empty(len(faces), dtype=np.intp)
     for k, region in enumerate(chosen):
         owner[list(region.faces)] = k
-    cells = fit(plan.space, frame, faces, absorb(faces, owner, radius), reach=3 * radius)
+    owner = absorb(faces, owner, 4 * radius, AISLE * radius if scan else 4 * radius)
+    owner = annex(faces, owner, (OFFICE * radius) ** 2, ROOM * radius, LEAF * radius) if scan else owner
+    cells = fit(plan.space, frame, faces, owner, reach=3 * radius)
     return Partition(tuple(cells), allowed, strict=False, notes=notes)

@@ -14,11 +14,12 @@ from discretize.rooms.shaking import Field
 
 __all__ = ["best_partition", "mutual_sight"]
 
-RUNS = 12  # randomised merges of a plan of ordinary size
-EFFORT = 15_000  # faces times merges; larger plans get fewer merges
+RUNS = 24  # randomised merges of a small plan
+EFFORT = 10_000  # faces times merges; larger plans get fewer merges
 MANY = 10_000  # faces; a plan with more is merged once and not improved any further
 SHARES = (0.0, 0.2, 0.2, 0.4, 0.4)  # of the cells that are broken before the merges that improve a partition
 ROUNDS = 3
+MARGIN = 0.3  # share of what sight may lack that estimates of it keep clear of
 CONVEX, SIGHT, OPEN = 1.0, 2.0, 0.15  # weights in the cost of a cell, beside 1 for being one
 
 
@@ -80,7 +81,7 @@ def _sees_itself(faces: Faces, least: float) -> Callable[[Region], bool]:
             return True
         if region.faces not in known:
             polygon = shapely.coverage_union_all(faces.polygons[sorted(region.faces)])
-            known[region.faces] = mutual_sight(polygon) >= least + 0.1 * (1.0 - least)
+            known[region.faces] = mutual_sight(polygon) >= least + MARGIN * (1.0 - least)
         return known[region.faces]
 
     return sound

@@ -16,7 +16,11 @@ __all__ = ["run_app"]
 app = App(
     name="geomsim",
     help="Find somebody who moves about a building, with a team of robots.",
-    help_epilogue="Exit codes: 0 done, 2 bad input, 130 interrupted. --debug shows where an error comes from.",
+    help_epilogue=(
+        "Every command also takes --plugin FILE.py or --plugin MODULE, with planners, heuristics, evader models or "
+        "readers of your own; it may be given several times. "
+        "Exit codes: 0 done, 2 bad input, 130 interrupted. --debug shows where an error comes from."
+    ),
     result_action="return_value",
     suppress_keyboard_interrupt=False,
     version_flags=["--version"],
@@ -34,6 +38,7 @@ app.command("geomsim.cli.compare:compare", name="compare", help="Many methods, m
 app.command("geomsim.cli.reproduce:reproduce", name="reproduce", help="The paper's experiments, as a page.")
 app.command("geomsim.cli.render:render", name="render", help="Pictures and video from a saved episode.")
 app.command("geomsim.cli.convert:convert", name="convert", help="A floor plan from one format into another.")
+app.command("geomsim.cli.export:export", name="export", help="Waypoints, ROS map, cells and graph for other programs.")
 app.command("geomsim.cli.listing:maps", name="maps", help="The bundled floor plans.")
 app.command("geomsim.cli.listing:planners", name="planners", help="The planners, each with its source.")
 
@@ -45,8 +50,11 @@ def run_app(tokens: Sequence[str]) -> NoReturn:
     try:
         signal.signal(signal.SIGTERM, _interrupt)
         speak_plainly()
+        tokens = _with_plugins(tokens)
         code = app(tokens, exit_on_error=False, print_error=False)
         finish_stdout()
+    except SystemExit as exc:  # Rich's, where the reader of the help has seen enough, like `head`
+        code = 0 if isinstance(exc.__context__, BrokenPipeError) else exc.code
     except Exception as exc:
         if debug:
             raise
@@ -55,6 +63,23 @@ def run_app(tokens: Sequence[str]) -> NoReturn:
         complain("Interrupted.")
         code = 130
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _with_plugins(tokens: list[str]) -> list[str]:
+    """Load the plugins that are named and, where there is a command, those installed; return the other tokens."""
+    named, others, rest = [], [], iter(tokens)
+    for token in rest:
+        flag, equals, value = token.partition("=")
+        if flag != "--plugin":
+            others.append(token)
+            continue
+        value = value if equals else next(rest, "")
+        named.append(value)
+    if others and not others[0].startswith("-") and "--help" not in others:
+        from geomsim.plugins import load_plugins
+
+        load_plugins(named)
+    return others
 
 
 def _explain(exc: Exception) -> int:

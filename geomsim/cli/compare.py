@@ -100,6 +100,7 @@ def _report(result: Any, folder: Path, *, figures: str | None, json: bool) -> No
     from geomsim.files import write_text
 
     told = result.as_dict()
+    told["cell_notes"] = list(result.experiment.cells.notes)
     if figures is not None:
         from geomsim.trials.figures import FIGURES
 
@@ -119,7 +120,7 @@ def _report(result: Any, folder: Path, *, figures: str | None, json: bool) -> No
     )
     for line in str(result.summary()).splitlines():
         say(line)
-    for note in result.notes:
+    for note in (*told["cell_notes"], *result.notes):
         say(note)
     for kind, file in told["files"].items():
         say(f"{kind + ':':<10} {file}")

@@ -11,8 +11,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from geomsim.files import OutputError
-
 __all__ = ["complain", "finish_stdout", "progress", "say", "say_json", "speak_plainly", "tally"]
 
 #: an error sentence longer than this loses its middle: a wrong value may be as long as a file
@@ -80,6 +78,8 @@ def _reader_may_be_gone() -> Iterator[None]:
         # what is left in the buffer would fail again when Python exits
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(exc, BrokenPipeError):
+            from geomsim.files import OutputError  # with all of maps, which help need not wait for
+
             raise OutputError(f"Cannot write to the standard output: {exc.strerror}.") from exc
 
 

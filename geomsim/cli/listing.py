@@ -32,12 +32,17 @@ def maps(*, json: JsonFlag = False) -> int:
 
 
 def planners(*, json: JsonFlag = False) -> int:
-    """List the planners, each with one line and its source."""
-    from planners import PLANNERS
+    """List the planners, each with one line and its source, and the names of heuristics and evader models."""
+    from geomsim.evaders import EVADERS
+    from planners import COSTS, PLANNERS
 
     if json:
-        say_json({"planners": [{"name": k, "about": e.summary, "source": e.source} for k, e in PLANNERS.items()]})
+        told = [{"name": k, "about": e.summary, "source": e.source} for k, e in PLANNERS.items()]
+        say_json({"planners": told, "costs": list(COSTS), "evaders": list(EVADERS)})
         return 0
     for name, entry in PLANNERS.items():
         say(f"{name:<12} {entry.summary} [{entry.source}]")
+    say("")
+    say(f"cost heuristics: {', '.join(COSTS)}")
+    say(f"evader models: {', '.join(EVADERS)}")
     return 0

@@ -110,3 +110,10 @@ def test_a_place_too_small_to_move_does_not_count_beside_a_larger_one():
     space = shapely.MultiPolygon([shapely.box(0, 0, 5, 5), closet])
     assert len(reach_of(space, RADIUS).parts) == 1
     assert len(reach_of(closet, RADIUS).parts) == 1
+
+
+def test_the_inside_of_a_wall_is_no_place_beside_a_room():
+    room, hollow, hall = shapely.box(0, 0, 5, 5), shapely.box(5.2, 0, 5.9, 4), shapely.box(6, 0, 6.7, 20)
+    assert [part.bounds[0] > 5 for part in reach_of(shapely.MultiPolygon([room, hollow]), 0.2).parts] == [False]
+    assert len(reach_of(shapely.MultiPolygon([room, hollow, hall]), 0.2).parts) == 2
+    assert len(reach_of(hollow, 0.2).parts) == 1

@@ -4,6 +4,7 @@ import json
 import os
 import struct
 import threading
+import time
 import zlib
 
 import cv2
@@ -281,6 +282,17 @@ def test_a_giant_is_refused_before_it_is_decoded(tmp_path, giant, monkeypatch):
     monkeypatch.setattr(cv2, "imdecode", None)
     with pytest.raises(PlanError, match=r"has 30000 x 30000 pixels; at most 40000000 are possible"):
         read_plan(path)
+
+
+@pytest.mark.parametrize("side", [1500, 2500])
+def test_a_picture_of_noise_is_refused_soon(tmp_path, side):
+    noise = (np.random.default_rng(0).random((side, side)) < 0.6).astype(np.uint8) * 254
+    cv2.imwrite(str(tmp_path / "noise.png"), noise)
+    before = time.process_time()
+    with pytest.raises(PlanError, match="this is noise") as caught:
+        read_plan(tmp_path / "noise.png", resolution=0.05)
+    assert time.process_time() - before < 5
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("suffix", [".png", ".pgm", ".bmp", ".jpg", ".tiff"])

@@ -1,4 +1,5 @@
 import dataclasses
+import time
 
 import numpy as np
 import pytest
@@ -14,16 +15,20 @@ from planners import (
     Decoupled,
     Planner,
     PlannerError,
+    PursuerState,
     Random,
     SameCell,
     SearchGraph,
     SearchProblem,
+    SearchState,
     Stationary,
     StationaryMotion,
     UniformMotion,
     check_policy,
     make_planner,
     parse_method,
+    uniform_belief,
+    unit_problem,
 )
 
 
@@ -129,7 +134,7 @@ def test_parameters_reach_the_planner():
     [
         ("decupled", {}, PlannerError, "no planner 'decupled'; did you mean 'decoupled'"),
         ("stationary", {"depth": 3}, PlannerError, "'stationary' takes no parameter; got depth = 3"),
-        ("decoupled", {"beam": 3}, PlannerError, "takes cost and depth; got beam = 3"),
+        ("decoupled", {"beam": 3}, PlannerError, "takes cost, depth and seconds; got beam = 3"),
         ("decoupled", {"depth": 0}, PlannerError, "at least 1; got 0"),
         ("decoupled", {"cost": "entropie"}, CostError, "did you mean 'entropy'"),
     ],
@@ -167,3 +172,23 @@ def test_a_method_is_made_from_one_name(method, planner):
 def test_a_bad_method_is_named(method, error, message):
     with pytest.raises(error, match=message):
         parse_method(method)
+
+
+@pytest.mark.parametrize("name", [name for name, entry in PLANNERS.items() if "seconds" in entry.parameters])
+@pytest.mark.parametrize("problem", list(problems()))
+def test_a_planner_without_time_still_decides_by_the_rules(name, problem):
+    check_policy(make_planner(name, seconds=0.0), problem, np.random.default_rng(3))
+
+
+def test_a_planner_ends_near_its_time():
+    pairs = [(k, k + 1) for k in range(199)] + [(k, k + 20) for k in range(0, 180, 3)]
+    problem = unit_problem(SearchGraph.from_edges(200, pairs), 3)
+    state = SearchState(0.0, uniform_belief(problem.graph, exclude=[0]), (PursuerState(0),) * 3, ((),) * 3)
+    for name, limits in [("decoupled", {"depth": 9}), ("beam", {"width": 3000}), ("rollout", {}), ("refined", {})]:
+        policy = make_planner(name, seconds=0.05, **limits).solve(problem, np.random.default_rng(0))
+        policy.decide(state)
+        policy = make_planner(name, seconds=0.05, **limits).solve(problem, np.random.default_rng(0))
+        begun = time.process_time()
+        policy.decide(state)
+        # Without a limit each of these takes seconds.
+        assert time.process_time() - begun < 0.5

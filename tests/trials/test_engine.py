@@ -187,7 +187,7 @@ def test_several_evaders(house: CellMap) -> None:
 class Stubborn:
     """Walks east, walls or not."""
 
-    def walk(self, routes: Routes, cell: int, rng: np.random.Generator, lookout: object) -> Iterator[Route]:  # noqa: ARG002
+    def walk(self, routes: Routes, cell: int, rng: np.random.Generator, lookout: object) -> Iterator[Route]:
         here = routes.checkpoint(cell)
         way = np.stack([here, here + np.array([100.0, 0.0])])
         while True:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from discretize.rooms import room_cells, search
 from discretize.rooms.search import mutual_sight
-from maps import FloorPlan, read_plan
+from maps import FloorPlan, Repair, read_plan
 from tests.discretize.plans import on_grid, shard_plans
 
 SHARED = Path(__file__).parents[4] / "shared"
@@ -152,7 +152,7 @@ def test_fewer_merges_are_said_so(monkeypatch):
     assert room_cells(plan_of(office(4))).notes == ()
     monkeypatch.setattr(search, "EFFORT", 1)
     (note,) = room_cells(plan_of(office(4))).notes
-    assert note.startswith("2 randomised merges instead of 12")
+    assert note.startswith("2 randomised merges instead of 24")
 
 
 @pytest.mark.parametrize("wall", [0.05, 0.2, 0.5])
@@ -192,3 +192,25 @@ def test_drawn_offices_give_nearly_convex_rooms(name):
     full = np.array([cell.area / cell.convex_hull.area for cell in cells])
     assert (full >= 0.9).mean() >= 0.9
     assert min(mutual_sight(cell) for cell in cells) >= 0.8
+
+
+def test_aisles_between_desks_belong_to_their_room_in_a_scan_alone():
+    """A classroom whose rows of desks reach to the wall, and beside it closets as narrow as the aisles."""
+    desks = [shapely.box(1.3 + 2 * k, 3, 2 + 2 * k, 7) for k in range(4)]
+    room = shapely.difference(shapely.box(0, 0, 9.3, 7), shapely.union_all(desks))
+    closets = [shapely.box(2 * k, -4, 1.4 + 2 * k, -0.2) for k in range(4)]
+    leaves = [shapely.box(0.3 + 2 * k, -0.2, 1.1 + 2 * k, 0) for k in range(4)]
+    space = shapely.union_all([room, *closets, *leaves])
+    drawn = plan_of(space)
+    scan = FloorPlan("scanned", drawn.space, repairs=(Repair("removed furniture", "Chairs.", shapely.Point(0, 0)),))
+    assert len(room_cells(drawn).cells) == 10  # the front of the room and five aisles
+    cells = room_cells(scan).cells
+    assert_partition(scan, cells)
+    found = [cell for cell in cells if cell.centroid.y > 0]
+    assert len(found) <= 2
+    assert same_sets([cell for cell in cells if cell.centroid.y < 0], closets, 0.1)
+
+
+def test_no_cell_is_narrower_than_two_robots_beside_each_other():
+    recess = shapely.box(1, 4, 4, 4.7)
+    assert len(room_cells(plan_of(shapely.union(two_rooms(), recess))).cells) == 2
