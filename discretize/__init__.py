@@ -9,6 +9,7 @@ from discretize.errors import DiscretizeError
 from discretize.exact import exact_cells
 from discretize.methods import DEFAULT_METHOD, METHODS, Method
 from discretize.visibility import visibility_cells, visibility_count
+from discretize.wallgrid import WallGrid
 
 __all__ = [
     "DEFAULT_METHOD",
@@ -19,6 +20,7 @@ __all__ = [
     "DiscretizeError",
     "Method",
     "Portal",
+    "WallGrid",
     "cells_text",
     "certify",
     "check_cells",

@@ -1,4 +1,4 @@
-"""Exact predictions of a scenario in the cell model: a floor plan's, or an edge list's."""
+"""Exact predictions of a scenario: of an edge list's, or a floor plan's in the cell model or by sight."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from geomsim.believing import believed_problem
 from geomsim.scenario import Scenario, read_scenario
 from geomsim.team import place_team
+from geomsim.watching import looks_every
 from maps import GeomsimError, PlanError
 from maps.texts import load_json
 from planners import (
@@ -44,6 +45,10 @@ class ScenarioPrediction:
         Of the times: "s", or "steps" in an edge list.
     capture : {"cell", "sight"}
         What counts as capture.
+    belief : {"cells", "places", "particles"}
+        What it is computed by: the cell model, or the team's run in the world and a belief over places or particles.
+    step : float
+        From one value of a survival curve to the next, in that unit.
     scenario : dict
         What it depends on.
     """
@@ -54,11 +59,15 @@ class ScenarioPrediction:
     first: int
     unit: str
     capture: str
+    belief: str
+    step: float
     scenario: dict[str, Any]
 
 
 def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: bool = False) -> ScenarioPrediction:
     """Predict a scenario.
+
+    It is that of the cell model unless capture by sight is asked for.
 
     Parameters
     ----------
@@ -79,6 +88,8 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
     capture = "sight" if "sight" in (asked, scenario.belief_capture) else "cell"
     if scenario.range_noise is not None:
         raise GeomsimError("What ranges robots will measure cannot be predicted: leave out range_noise.")
+    if asked == "sight" and not is_edge_list(scenario.plan):
+        return _by_sight(scenario, everywhere=everywhere)
     if is_edge_list(scenario.plan):
         if capture == "sight":
             raise GeomsimError(f"{scenario.plan} is an edge list, without walls: capture by sight needs a floor plan.")
@@ -108,7 +119,28 @@ def predict_scenario(path: Path | None, keys: dict[str, Any], *, everywhere: boo
         replace(p, paths=tuple(tuple(stop for stop in path if stop < numbered) for path in p.paths))
         for p in predictions
     )
-    return ScenarioPrediction(name, predictions, bounds, first, unit, capture, scenario.as_dict())
+    step = 1.0 if first == 0 else scenario.belief_step
+    return ScenarioPrediction(name, predictions, bounds, first, unit, capture, "cells", step, scenario.as_dict())
+
+
+def _by_sight(scenario: Scenario, *, everywhere: bool) -> ScenarioPrediction:
+    from geomsim.sightprediction import predict_sight
+
+    plan, cells = scenario.place()
+    team, timing, motion = scenario.team(), scenario.timing(), scenario.belief_motion()
+    starts = _common(SearchGraph.from_cells(cells), scenario.pursuers) if everywhere else [place_team(cells, team)]
+    belief = "particles" if scenario.belief == "particles" else "places"
+    planning = replace(team, believes=scenario.belief_capture) if belief == "particles" else team
+    predictions = tuple(
+        predict_sight(
+            cells, planning, start, scenario.quarry(), motion, timing, scenario.seed, particles=belief == "particles"
+        )
+        for start in starts
+    )
+    _, problem = believed_problem(cells, replace(team, believes="places"), motion, timing.belief_step)
+    bounds = lower_bounds(problem, starts, reachable=True)
+    step = timing.physics_step * looks_every(timing.physics_step)
+    return ScenarioPrediction(plan.name, predictions, bounds, 1, "s", "sight", belief, step, scenario.as_dict())
 
 
 def is_edge_list(plan: str) -> bool:

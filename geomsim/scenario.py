@@ -15,7 +15,7 @@ from geomsim.communication import LINKS, Communication
 from geomsim.evaders import EVADERS, make_evader_model
 from geomsim.pursuit import CAPTURE_RULES, Timing
 from geomsim.sensing import Sensor
-from geomsim.team import BELIEVED_CAPTURES, Evader, Team
+from geomsim.team import BELIEFS, BELIEVED_CAPTURES, Evader, Team
 from maps import FloorPlan, GeomsimError, bundled_names, nearest, read_plan
 from maps.texts import read_text
 from planners import (
@@ -76,6 +76,7 @@ class Scenario(BaseModel):
     communication: str = "central"
     communication_range: _Positive | None = None
     capture: str = "sight"
+    belief: str = "cells"
     belief_capture: str = "cell"
     range: _Reach | tuple[_Reach, ...] = math.inf
     fov_degrees: _Degrees | tuple[_Degrees, ...] = 360.0
@@ -111,11 +112,12 @@ class Scenario(BaseModel):
             return tuple(cls._for_all_or_each(one, info) for one in value)
         return math.inf if value is None and info.field_name == "range" else value
 
-    @field_validator("capture", "belief_capture", "evader", "motion", "checkpoints", "communication")
+    @field_validator("capture", "belief", "belief_capture", "evader", "motion", "checkpoints", "communication")
     @classmethod
     def _known(cls, value: str, info: Any) -> str:
         known: dict[str, Iterable[str]] = {
             "capture": CAPTURE_RULES,
+            "belief": BELIEFS,
             "belief_capture": BELIEVED_CAPTURES,
             "evader": EVADERS,
             "motion": MOTIONS,
@@ -138,7 +140,7 @@ class Scenario(BaseModel):
             sensor=self._sensors(),
             communication=Communication(self.communication, self.communication_range or math.inf),
             checkpoints=self.checkpoints,
-            believes=self.belief_capture,
+            believes=self.belief_capture if self.belief == "cells" else self.belief,
             range_noise=self.range_noise,
         )
 
@@ -280,7 +282,8 @@ def describe(
         "communication": team.communication.links,
         "communication_range": team.communication.range,
         "capture": capture,
-        "belief_capture": team.believes,
+        "belief": team.belief,
+        "belief_capture": team.believes if team.belief == "cells" else "cell",
         "range": _each([sensor.range for sensor in team.sensors]),
         "fov_degrees": _each([math.degrees(sensor.field_of_view) for sensor in team.sensors]),
         "detection": _each([sensor.detection for sensor in team.sensors]),

@@ -14,11 +14,17 @@ from geomsim.sensing import Sensor
 from maps import GeomsimError, nearest
 from planners import CHECKPOINTS, Decoupled, Planner
 
-__all__ = ["BELIEVED_CAPTURES", "Evader", "Team", "place_evader", "place_team"]
+__all__ = ["BELIEFS", "BELIEVED_CAPTURES", "Evader", "Team", "place_evader", "place_team"]
 
 BELIEVED_CAPTURES = {
     "cell": "a pursuer catches whoever is in its own cell (the paper's assumption)",
     "sight": "a pursuer catches whoever it sees, within its range and field of view",
+}
+
+BELIEFS = {
+    "cells": "in which cell the evader is (the paper's belief)",
+    "places": "in which place on the routes between checkpoints it is, and which way it goes; caught is who is seen",
+    "particles": "a hundred thousand of them, for predictions by sight only",
 }
 
 
@@ -46,8 +52,9 @@ class Team:
         Whether one planner plans for all, or each for itself, and who hears whom.
     checkpoints : {"centroids", "boundaries"}
         Where they decide anew: at the centroids of cells, or also where they pass from cell to cell.
-    believes : {"cell", "sight"}
-        What they count on to catch, see ``BELIEVED_CAPTURES``.
+    believes : {"cell", "sight", "places", "particles"}
+        What they count on to catch, see ``BELIEVED_CAPTURES``; or that they believe in places or particles, see
+        ``BELIEFS``.
     range_noise : float or None
         Standard deviation of the distance to each evader that every robot measures at each belief step, also through
         walls, metres; None if they measure none.
@@ -83,10 +90,15 @@ class Team:
             raise GeomsimError(f"The noise of ranges must be positive and finite, but is {self.range_noise:g} m.")
         for what, name, known in (
             ("kind of checkpoints", self.checkpoints, CHECKPOINTS),
-            ("believed capture", self.believes, BELIEVED_CAPTURES),
+            ("believed capture", self.believes, (*BELIEVED_CAPTURES, "places", "particles")),
         ):
             if name not in known:
                 raise GeomsimError(f"There is no {what} {name!r}; {nearest(name, known)}")
+
+    @property
+    def belief(self) -> str:
+        """What they believe in, see ``BELIEFS``."""
+        return self.believes if self.believes in BELIEFS else "cells"
 
     @property
     def speeds(self) -> tuple[float, ...]:

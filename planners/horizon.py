@@ -11,11 +11,16 @@ from numpy.typing import NDArray
 from planners.beam import BeamSearch
 from planners.branching import Certificate, JointSearch
 from planners.clock import FOREVER, Clock
+from planners.pathbeam import PathBeam
 from planners.policy import SearchProblem
 from planners.simulation import SearchModel
 from planners.team import TeamPolicy, at_least
 
 __all__ = ["BestResponse", "BranchAndBound", "Sequential", "respond"]
+
+# Paths that a beam search for an answer follows, where there are too many states for the best answer; twice as many
+# made no plan better on the bundled plans.
+_WIDTH = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +29,8 @@ class Sequential:
 
     Sequential allocation (Hollinger et al. 2009); since what a path adds can only shrink as paths are added, the
     team gets at least half of what the best joint plan would. Each pursuer's path is the best one, by branch and
-    bound, see :class:`planners.branching.JointSearch`.
+    bound, see :class:`planners.branching.JointSearch`; where states are parts of cells, of which there are too many for
+    that, it is found by beam search (:class:`planners.pathbeam.PathBeam`).
 
     Attributes
     ----------
@@ -54,7 +60,9 @@ class Sequential:
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
         """Prepare a policy; nothing in it is random."""
-        search = JointSearch(SearchModel(problem), horizon=self.horizon, discount=self.discount)
+        model = SearchModel(problem)
+        beam = PathBeam(model, horizon=self.horizon, discount=self.discount, width=_WIDTH)
+        search = JointSearch(model, horizon=self.horizon, discount=self.discount) if problem.space is None else None
 
         def allocate(
             belief: NDArray[np.float64],
@@ -63,9 +71,11 @@ class Sequential:
             announced: Sequence[Sequence[int]],  # noqa: ARG001  (every plan starts from nothing)
             clock: Clock,
         ) -> Sequence[Sequence[int]]:
+            if search is None:
+                return beam.respond(belief, moves, done, (), rounds=0, clock=clock)
             return respond(search, belief, moves, done, (), rounds=0, clock=clock)
 
-        return TeamPolicy(search.model, allocate, self.patience, self.seconds)
+        return TeamPolicy(model, allocate, self.patience, self.seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,11 +97,15 @@ class BestResponse:
         Time between two searches, belief steps.
     seconds : float
         Thinking time for one decision; with a limit, results depend on the machine.
+    width : int
+        Most paths that the search for an answer follows of those that come to a checkpoint at about the same time;
+        0 lets it find the best answer there is where states are cells, and stands for 4 where they are parts of them,
+        see :class:`planners.pathbeam.PathBeam`.
 
     Raises
     ------
     PlannerError
-        If a number is below 1, or time or discount below 0.
+        If a number is below 1, or time, discount or width below 0.
     """
 
     horizon: int = 10
@@ -99,14 +113,18 @@ class BestResponse:
     discount: float = 1.0
     patience: int = 1
     seconds: float = float("inf")
+    width: int = 0
 
     def __post_init__(self) -> None:
         at_least(1, horizon=self.horizon, rounds=self.rounds, patience=self.patience)
-        at_least(0, discount=self.discount, seconds=self.seconds)
+        at_least(0, discount=self.discount, seconds=self.seconds, width=self.width)
 
     def solve(self, problem: SearchProblem, rng: np.random.Generator) -> TeamPolicy:  # noqa: ARG002  (no chance)
         """Prepare a policy; nothing in it is random."""
-        search = JointSearch(SearchModel(problem), horizon=self.horizon, discount=self.discount)
+        model = SearchModel(problem)
+        beam = PathBeam(model, horizon=self.horizon, discount=self.discount, width=self.width or _WIDTH)
+        exact = self.width == 0 and problem.space is None
+        search = JointSearch(model, horizon=self.horizon, discount=self.discount) if exact else None
 
         def answer(
             belief: NDArray[np.float64],
@@ -115,9 +133,11 @@ class BestResponse:
             announced: Sequence[Sequence[int]],
             clock: Clock,
         ) -> Sequence[Sequence[int]]:
+            if search is None:
+                return beam.respond(belief, moves, done, announced, rounds=self.rounds, clock=clock)
             return respond(search, belief, moves, done, announced, rounds=self.rounds, clock=clock)
 
-        return TeamPolicy(search.model, answer, self.patience, self.seconds)
+        return TeamPolicy(model, answer, self.patience, self.seconds)
 
 
 @dataclass(frozen=True, slots=True)

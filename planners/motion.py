@@ -110,7 +110,7 @@ class AreaSpeedDegree:
     speed: float = 1.0
 
     def __post_init__(self) -> None:
-        _check_speed(self.speed)
+        check_speed(self.speed)
 
     def matrix(self, graph: SearchGraph, time_step: float) -> Sparse:
         """Return P for a step of any length above 0, seconds."""
@@ -149,7 +149,7 @@ class DwellTime:
     speed: float = 1.0
 
     def __post_init__(self) -> None:
-        _check_speed(self.speed)
+        check_speed(self.speed)
 
     def matrix(self, graph: SearchGraph, time_step: float) -> Sparse:
         """Return P for a step of any length above 0, seconds."""
@@ -239,7 +239,7 @@ class StationaryMotion:
         return _dispersion(graph, np.ones(len(graph)), np.zeros(len(graph)))
 
 
-def _check_speed(speed: float) -> None:
+def check_speed(speed: float) -> None:
     if not (np.isfinite(speed) and speed > 0):
         raise MotionError(f"The evader's speed must be a number above 0; got {speed}.")
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import weakref
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,10 @@ MOST_LINES = 60_000_000
 # Lines of sight that are looked at together: some hundred megabytes.
 BATCH = 500_000
 
+InSight: TypeAlias = Callable[
+    [NDArray[np.float64], NDArray[np.float64]], tuple[NDArray[np.integer[Any]], NDArray[np.integer[Any]]]
+]
+
 # A pursuer that looks all around has no heading.
 ALL_AROUND = math.tau - 1e-9
 
@@ -58,7 +63,7 @@ class SightMap:
         Where the stations are, metres.
     headings : ndarray, shape (K,)
         Where a pursuer that goes looks there, radians; NaN at checkpoints.
-    station, part : ndarray of intp, shape (L,)
+    station, part : ndarray of integers, shape (L,)
         Every pair that sees each other, ordered by station.
     """
 
@@ -68,8 +73,8 @@ class SightMap:
     first: NDArray[np.intp]
     places: NDArray[np.float64]
     headings: NDArray[np.float64]
-    station: NDArray[np.intp]
-    part: NDArray[np.intp]
+    station: NDArray[np.integer[Any]]
+    part: NDArray[np.integer[Any]]
 
     @classmethod
     def of(cls, cells: CellMap, roads: Roads, reach: float = math.inf, spacing: float = PART) -> SightMap:
@@ -100,12 +105,34 @@ class SightMap:
     @classmethod
     def _find(cls, cells: CellMap, roads: Roads, reach: float, spacing: float) -> SightMap:
         space, points = cut_cells(cells, spacing)
-        count = np.maximum(1, np.rint(roads.graph.length / STATION)).astype(np.intp)
+        sight = Sight(cells.plan)
+        return cls.over(roads, space, points, STATION, lambda places, parts: _in_sight(sight, places, parts, reach))
+
+    @classmethod
+    def over(
+        cls, roads: Roads, space: StateSpace, points: NDArray[np.float64], spacing: float, in_sight: InSight
+    ) -> SightMap:
+        """Lay stations about ``spacing`` metres apart along roads, and find what is in sight of them.
+
+        Parameters
+        ----------
+        roads : Roads
+            E ways.
+        space : StateSpace
+            S states of a belief.
+        points : ndarray, shape (S, 2)
+            Where they are, metres.
+        spacing : float
+            Metres.
+        in_sight : callable
+            Given K places and S points, it returns the pairs that see each other, ordered by place.
+        """
+        count = np.maximum(1, np.rint(roads.graph.length / spacing)).astype(np.intp)
         first = len(roads.graph) + np.concatenate([[0], np.cumsum(count)])[:-1]
         found = [_stations(line, n) for line, n in zip(roads.lines, count.tolist(), strict=True)]
         places = np.concatenate([roads.points, *(places for places, _ in found)])
         headings = np.concatenate([np.full(len(roads.points), np.nan), *(along for _, along in found)])
-        station, part = _in_sight(Sight(cells.plan), places, points, reach)
+        station, part = in_sight(places, points)
         return cls(space, points, count, first.astype(np.intp), places, headings, station, part)
 
 

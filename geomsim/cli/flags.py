@@ -97,6 +97,9 @@ class ScenarioFlags(PlanFlags):
     capture
         What counts as capture: sight, a free line of sight to the evader, or cell, being in its cell. [default:
         sight]
+    belief
+        What the robots believe in: cells, in which of them the evader is, or places, where on the routes between
+        checkpoints it is, which is true of what they see; particles for `geomsim predict`. [default: cells]
     belief_capture
         What the belief counts on: cell, catching whoever is in the same cell, or sight, whoever is seen. [default:
         cell]
@@ -155,6 +158,7 @@ class ScenarioFlags(PlanFlags):
     communication: str | None = None
     communication_range: float | None = None
     capture: str | None = None
+    belief: str | None = None
     belief_capture: str | None = None
     range: str | None = None
     fov_degrees: str | None = None

@@ -1,4 +1,4 @@
-"""``geomsim predict``: the exact expected capture time of a team in the cell model, without sampling."""
+"""``geomsim predict``: the exact expected capture time of a team, without sampling evaders."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ def predict(
     json: JsonFlag = False,
     flags: ScenarioFlags = ScenarioFlags(),  # noqa: B008 a frozen value without fields set
 ) -> int:
-    """Predict when a team will capture, exactly, in the cell model: memoryless moves, capture in the same cell.
+    """Predict when a team will capture, exactly: in the cell model, same-cell capture and memoryless moves.
 
-    With `--capture sight`, capture is by line of sight to parts of cells, within range and field of view.
+    With `--capture sight` it is when the team will see the evader: the team goes its ways in the world, and a belief
+    over places on the routes, on which the paper's evader moves exactly, follows what it sees.
 
     Parameters
     ----------
@@ -51,16 +52,19 @@ def predict(
         "seconds_per_plan": float(np.nanmean(thought)) if np.isfinite(thought).any() else None,
         "unit": result.unit,
         "capture": result.capture,
+        "belief": result.belief,
         "plans": [[[c + result.first for c in path] for path in p.paths] for p in result.predictions],
         "per_start": [_start(p, k, result.first, result.bounds) for k, p in enumerate(result.predictions)],
         "survival": result.predictions[0].survival.tolist() if len(result.predictions) == 1 else None,
+        "survival_step": result.step,
         "scenario": result.scenario,
     }
     if json:
         say_json(told)
         return 0
     model = "by sight of parts of cells" if result.capture == "sight" else "in the cell model"
-    say(f"{result.name}: expected capture after {told['expected_time']:.2f} {result.unit}, {model}")
+    how = model if result.belief == "cells" else f"by sight, with a belief over {result.belief}"
+    say(f"{result.name}: expected capture after {told['expected_time']:.2f} {result.unit}, {how}")
     if len(result.predictions) > 1:
         best, worst = (told["per_start"][int(k)] for k in (times.argmin(), times.argmax()))
         say(
@@ -73,7 +77,8 @@ def predict(
         say(f"mean time to plan: {1000 * told['seconds_per_plan']:.2f} ms")
     if len(result.predictions) == 1:
         for who, path in enumerate(told["plans"][0], start=1):
-            say(f"pursuer {who} goes to {' '.join(map(str, path[:30]))}{' ...' if len(path) > 30 else ''}")
+            if path:
+                say(f"pursuer {who} goes to {' '.join(map(str, path[:30]))}{' ...' if len(path) > 30 else ''}")
     return 0
 
 

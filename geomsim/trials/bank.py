@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from discretize import WallGrid
 from geomsim.pursuit import HELD_UP
 from geomsim.quarry import Quarry
 from geomsim.seeds import Streams
 from geomsim.trials.experiment import Experiment, Row
 from geomsim.trials.teamruns import TeamRun
-from geomsim.trials.walls import WallGrid
 from geomsim.walking import Routes
 
 if TYPE_CHECKING:

@@ -176,8 +176,6 @@ def _reason(team: Team, evader: Evader) -> str | None:
         return f"An evader of the kind {type(evader.model).__name__} reacts to robots"
     if evader.count > 1:
         return f"With {evader.count} evaders robots search on for the others once one is captured"
-    if team.range_noise is not None:
-        return "A team that measures ranges goes where its evader leads it"
     return None
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from discretize import WallGrid
 from geomsim.pursuit import run_episode
 from geomsim.trials.bank import Meetings
 from geomsim.trials.experiment import Experiment
-from geomsim.trials.walls import WallGrid
 
 __all__ = ["run_episodes"]
 

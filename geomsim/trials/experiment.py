@@ -119,8 +119,10 @@ class Experiment:
         return [place_evader(self.cells, self.evader, self.starts, Streams(seed).placing) for seed in self.seeds]
 
     def team_for(self, method: int) -> Team:
-        """Return the team with the planner of a method."""
-        return replace(self.team, planner=self.methods[method].planner)
+        """Return the team with the planner of a method, and its belief."""
+        chosen = self.methods[method]
+        believes = "places" if chosen.belief == "places" else self.team.believes
+        return replace(self.team, planner=chosen.planner, believes=believes)
 
     def patience(self, trials: NDArray[np.intp]) -> NDArray[np.float64]:
         """Attention at which each robot notices the evader of each of some trials, shape (K, P)."""

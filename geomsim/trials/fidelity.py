@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from geomsim.curves import lengthened, mean_time
 from geomsim.team import Evader
 from geomsim.trials.experiment import Experiment
 from geomsim.trials.statistics import Survival
@@ -24,7 +24,7 @@ __all__ = ["Forecast", "forecast"]
 
 @dataclass(frozen=True, slots=True)
 class Forecast:
-    """The capture time in the cell model.
+    """A predicted capture time.
 
     Attributes
     ----------
@@ -33,16 +33,19 @@ class Forecast:
     free : ndarray, shape (T + 1,)
         Probability that the evader is free after each step.
     step : float
-        Seconds.
+        Of physics, or of looks by sight, seconds.
+    begin : float
+        Time of the first one, seconds.
     """
 
     mean: float
     free: NDArray[np.float64]
     step: float
+    begin: float = 0.0
 
     def gap(self, observed: Survival, limit: float) -> float:
         """Return the largest difference between the predicted and an observed curve, up to the time limit."""
-        at = self.step * np.arange(len(self.free))
+        at = self.begin + self.step * np.arange(len(self.free))
         at = at[at <= limit]
         seen = observed.free[np.searchsorted(observed.time, at + 1e-9, side="right") - 1]
         return float(np.abs(seen - self.free[: len(at)]).max())
@@ -69,14 +72,11 @@ def forecast(experiment: Experiment, runs: Sequence[TeamRun]) -> Forecast:
     runs : sequence of TeamRun
         Those of one method.
     """
-    timing, limit = experiment.timing, experiment.timing.limit
-    if experiment.team.believes == "sight":
-        step, curves = timing.belief_step, [run.unseen[: run.steps // timing.steps_per_belief + 1] for run in runs]
-    else:
-        step, curves = timing.physics_step, _free(experiment, runs)
-    mean = float(np.mean([_mean(curve, step, limit) for curve in curves]))
+    step, limit = experiment.timing.physics_step, experiment.timing.limit
+    curves = _free(experiment, runs)
+    mean = float(np.mean([mean_time(curve, step, limit) for curve in curves]))
     length = max(map(len, curves))
-    free = np.mean([_lengthened(curve, length) for curve in curves], axis=0)
+    free = np.mean([lengthened(curve, length) for curve in curves], axis=0)
     return Forecast(mean, free, step)
 
 
@@ -117,22 +117,3 @@ def _halved(dispersion: Sparse) -> Sparse:
     moves = diags_array(share) @ (dispersion - diags_array(dispersion.diagonal()))
     stays, turns = diags_array(1.0 - faster), diags_array(faster)
     return csr_array(block_array([[stays, turns], [moves, stays]]))
-
-
-def _mean(free: NDArray[np.float64], step: float, limit: float) -> float:
-    """Return the time for which the evader is free, on average, up to the time limit, seconds."""
-    seen, left, rate = float(free[:-1].sum()) * step, max(0.0, limit - (len(free) - 1) * step), _rate(free) / step
-    return seen + float(free[-1]) * (-math.expm1(-rate * left) / rate if rate > 0 else left)
-
-
-def _lengthened(free: NDArray[np.float64], length: int) -> NDArray[np.float64]:
-    further = np.arange(1, length - len(free) + 1)
-    return np.concatenate([free, free[-1] * np.exp(-_rate(free) * further)])
-
-
-def _rate(free: NDArray[np.float64]) -> float:
-    """Return how fast a curve falls in its last half, a physics step."""
-    half = len(free) // 2
-    if free[-1] <= 0 or half == len(free) - 1:
-        return 0.0
-    return float(np.log(free[half] / free[-1])) / (len(free) - 1 - half)

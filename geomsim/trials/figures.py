@@ -25,7 +25,7 @@ _INK = "#222222"
 
 
 def draw_means(trials: Trials, path: Path) -> Path:
-    """Draw the mean capture time of each method with its standard error, and what the cell model predicts.
+    """Draw the mean capture time of each method with its standard error, and what is predicted.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def draw_means(trials: Trials, path: Path) -> Path:
     errors = np.array([line.observed.sem or 0.0 for line in summary.methods])
     axes.errorbar(means, rows, xerr=errors, fmt="none", ecolor=_INK, capsize=3, lw=1.2, label="standard error")
     told = [line.predicted for line in summary.methods]
-    axes.plot(told, rows, "D", color="#d55e00", ms=5, ls="none", label="predicted in the cell model")
+    axes.plot(told, rows, "D", color="#d55e00", ms=5, ls="none", label="predicted")
     end = max(float((means + errors).max()), *told, 1e-9)
     wide = means.min() > 0 and end > 12 * means.min()
     if wide:
@@ -130,7 +130,7 @@ def draw_heuristics(trials: Trials, path: Path) -> Path | None:
 
 
 def draw_fidelity(trials: Trials, path: Path) -> Path | None:
-    """Draw the mean capture time that the cell model predicts against the one observed, method by method.
+    """Draw the mean capture time that is predicted against the one observed, method by method.
 
     Parameters as for :func:`draw_means`.
 
@@ -165,7 +165,7 @@ def draw_fidelity(trials: Trials, path: Path) -> Path | None:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter("")
-    axes.set_xlabel("predicted in the cell model, s (logarithmic)")
+    axes.set_xlabel("predicted, s (logarithmic)")
     axes.set_ylabel("mean of trials, s (logarithmic)")
     tau = summary.rank_correlation
     axes.set_title(

@@ -1,4 +1,4 @@
-"""What is compiled: rays among walls, and the first look of a team at each of many evaders.
+"""What is compiled: the first look of a team at each of many evaders.
 
 Imported late: numba takes half a second to import, and the first run after an installation some seconds to compile.
 """
@@ -6,90 +6,19 @@ Imported late: numba takes half a second to import, and the first run after an i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from geomsim.trials.walls import WallGrid
+from discretize import WallGrid
+from discretize.raycast import blocking_wall, blocks, compiled, free_line
 
-__all__ = ["Looked", "Lookers", "blocked_moves", "first_looks", "first_meetings", "seen_pairs"]
-
-
-def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    return cast(Callable[..., Any], numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+__all__ = ["Looked", "Lookers", "blocked_moves", "first_looks", "first_meetings"]
 
 
-@_compiled
-def _blocks(walls, w, ax, ay, bx, by):  # type: ignore[no-untyped-def]
-    """Whether wall ``w``, from p to q, is between a and b.
-
-    A ray that touches the end of a wall is blocked; one that only ends on a wall, or runs along one, is not. These
-    are the rules of pymunk's segment queries.
-    """
-    px, py, qx, qy = walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3]
-    dx, dy = bx - ax, by - ay
-    p = dx * (py - ay) - dy * (px - ax)
-    q = dx * (qy - ay) - dy * (qx - ax)
-    if p * q > 0.0:
-        return False
-    ex, ey = qx - px, qy - py
-    a = ex * (ay - py) - ey * (ax - px)
-    b = ex * (by - py) - ey * (bx - px)
-    return a * b < 0.0
-
-
-@_compiled
-def _blocker(grid, ax, ay, bx, by):  # type: ignore[no-untyped-def]
-    """Return a wall that is between a and b, or -1; squares are visited in the order in which the ray goes on."""
-    size, columns, rows, (x0, y0) = grid.size, grid.columns, grid.rows, grid.origin
-    dx, dy = bx - ax, by - ay
-    i = min(max(math.floor((ax - x0) / size), 0), columns - 1)
-    j = min(max(math.floor((ay - y0) / size), 0), rows - 1)
-    last_i = min(max(math.floor((bx - x0) / size), 0), columns - 1)
-    last_j = min(max(math.floor((by - y0) / size), 0), rows - 1)
-    step_i, step_j = (1 if dx > 0 else -1), (1 if dy > 0 else -1)
-    # share of the ray at which it leaves the square, and for one square's side
-    side_x, side_y = np.inf, np.inf
-    leave_x, leave_y = np.inf, np.inf
-    if dx != 0.0:
-        side_x = size / abs(dx)
-        leave_x = (x0 + (i + (1 if dx > 0 else 0)) * size - ax) / dx
-    if dy != 0.0:
-        side_y = size / abs(dy)
-        leave_y = (y0 + (j + (1 if dy > 0 else 0)) * size - ay) / dy
-    for _ in range(abs(last_i - i) + abs(last_j - j) + 1):
-        square = j * columns + i
-        for m in range(grid.first[square], grid.first[square + 1]):
-            w = grid.members[m]
-            if _blocks(grid.walls, w, ax, ay, bx, by):
-                return w
-        if j == last_j or (i != last_i and leave_x < leave_y):
-            i += step_i
-            leave_x += side_x
-        else:
-            j += step_j
-            leave_y += side_y
-    return -1
-
-
-@_compiled
-def _free(grid, ax, ay, bx, by):  # type: ignore[no-untyped-def]
-    return _blocker(grid, ax, ay, bx, by) < 0
-
-
-@_compiled
-def _pairs(grid, a, b):  # type: ignore[no-untyped-def]
-    seen = np.empty(len(a), dtype=np.bool_)
-    for k in range(len(a)):
-        seen[k] = _free(grid, a[k, 0], a[k, 1], b[k, 0], b[k, 1])
-    return seen
-
-
-@_compiled
+@compiled
 def _blocked(grid, track):  # type: ignore[no-untyped-def]
     size, (x0, y0) = grid.size, grid.origin
     count = 0
@@ -101,12 +30,12 @@ def _blocked(grid, track):  # type: ignore[no-untyped-def]
                 square = min(max(j, 0), grid.rows - 1) * grid.columns + min(max(i, 0), grid.columns - 1)
                 if grid.first[square] == grid.first[square + 1]:
                     continue  # most moves stay within a square that holds no wall
-            if (ax != bx or ay != by) and not _free(grid, ax, ay, bx, by):
+            if (ax != bx or ay != by) and not free_line(grid, ax, ay, bx, by):
                 count += 1
     return count
 
 
-@_compiled
+@compiled
 def _looks(  # type: ignore[no-untyped-def]
     grid, eyes, headings, reach, half, rates, targets, which, patience, looked, when, who
 ):
@@ -131,9 +60,9 @@ def _looks(  # type: ignore[no-untyped-def]
                     if abs(off) > half[i]:
                         continue
                 w = hides[k, i]
-                if w >= 0 and _blocks(grid.walls, w, ax, ay, bx, by):
+                if w >= 0 and blocks(grid.walls, w, ax, ay, bx, by):
                     continue
-                hides[k, i] = _blocker(grid, ax, ay, bx, by)
+                hides[k, i] = blocking_wall(grid, ax, ay, bx, by)
                 if hides[k, i] < 0:
                     looked[k, i] += rates[i]
                     if looked[k, i] >= patience[k, i]:
@@ -148,7 +77,7 @@ def _looks(  # type: ignore[no-untyped-def]
             break
 
 
-@_compiled
+@compiled
 def _meetings(occupied, rates, hidden, which, patience, looked, when, who):  # type: ignore[no-untyped-def]
     free = which.copy()
     left = len(free)
@@ -170,11 +99,6 @@ def _meetings(occupied, rates, hidden, which, patience, looked, when, who):  # t
         left = kept
         if left == 0:
             break
-
-
-def seen_pairs(grid: WallGrid, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return whether no wall is between ``a[k]`` and ``b[k]``, both of shape (K, 2), metres."""
-    return cast(NDArray[np.bool_], _pairs(grid, np.asarray(a, np.float64), np.asarray(b, np.float64)))
 
 
 def blocked_moves(grid: WallGrid, track: NDArray[Any]) -> int:

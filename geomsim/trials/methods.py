@@ -23,22 +23,30 @@ class Method:
         What tables call it.
     planner : Planner
         How the team coordinates.
+    belief : {"cells", "places"}
+        What it plans on.
     """
 
     name: str
     planner: Planner
+    belief: str = "cells"
 
 
 def parse_method(name: str) -> Method:
     """Make a method from its name: a planner, then its cost heuristic, then how far it looks ahead.
 
-    What is left out has the planner's default, and is added to the name: ``decoupled`` is ``decoupled-entropy-5``.
+    What is left out has the planner's default, and is added to the name: ``decoupled`` is ``decoupled-entropy-5``. A
+    last part ``-places`` lets it plan on a belief over places instead of cells.
 
     Raises
     ------
     GeomsimError
         If there is no such planner or heuristic, or the planner does not take one.
     """
+    if name.endswith(_ON_PLACES):
+        rest = name.removesuffix(_ON_PLACES)
+        made = parse_method(rest + _FURTHER.get(rest, ""))
+        return Method(made.name + _ON_PLACES, made.planner, "places")
     known = [p for p in PLANNERS if name == p or name.startswith(f"{p}-")]
     if not known:
         raise GeomsimError(f"There is no method {name!r}; {nearest(name.rstrip('0123456789-'), PLANNERS)}")
@@ -92,6 +100,8 @@ def default_methods() -> tuple[str, ...]:
     later = [p for p in PLANNERS if p not in ("stationary", "random", "coupled", "decoupled")]
     return (*names, *(parse_method(p + _FURTHER.get(p, "")).name for p in later))
 
+
+_ON_PLACES = "-places"
 
 #: planners over a fixed time whose own horizon is made for graphs with hops of one step: here it is in seconds, and a
 #: hop takes five to thirty

@@ -38,7 +38,7 @@ class MethodRun:
     seconds_per_decision : float
         The same for each decision of the planner, the belief and the bodies included.
     forecast : Forecast
-        What the cell model says.
+        What is predicted.
     """
 
     runs: int
@@ -58,7 +58,8 @@ class MethodSummary:
     observed : Sample
         What the trials say.
     predicted : float
-        Mean capture time in the cell model, seconds.
+        Predicted mean capture time, seconds: by a belief over places where capture is by sight, else in the cell
+        model.
     gap : float
         Largest difference between the predicted and the observed share captured, over time.
     difference : Difference or None
@@ -213,11 +214,12 @@ class Trials:
                     "predicted_mean": line.predicted,
                     "predicted_ratio": line.predicted / line.observed.mean,
                     "curve_gap": line.gap,
+                    "belief": self.experiment.team_for(k).belief,
                     "team_runs": line.run.runs,
                     "seconds": line.run.seconds,
                     "seconds_per_decision": line.run.seconds_per_decision,
                 }
-                for line in summary.methods
+                for k, line in enumerate(summary.methods)
             ],
             "reference": self.reference,
             "paired": [

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from discretize import WallGrid
 from geomsim.pursuit import HELD_UP
 from geomsim.seeds import Streams
 from geomsim.teamwork import Teamwork
 from geomsim.trials.experiment import Experiment
-from geomsim.trials.walls import WallGrid
 
 __all__ = ["TeamRun", "run_team"]
 
@@ -32,8 +32,6 @@ class TeamRun:
         Where they looked, radians.
     cells : ndarray of int32, shape (S + 1, P)
         The cells in which they were, counted from 0.
-    unseen : ndarray, shape (B + 1,)
-        Probability that an evader is free, as the team believes, after each belief step.
     drew : bool
         Whether the planner drew random numbers; if not, every run of this team is the same.
     decisions : int
@@ -50,7 +48,6 @@ class TeamRun:
     eyes: NDArray[np.float64]
     headings: NDArray[np.float64]
     cells: NDArray[np.int32]
-    unseen: NDArray[np.float64]
     drew: bool
     decisions: int
     seconds: float
@@ -95,7 +92,7 @@ def run_team(experiment: Experiment, method: int, runs: Sequence[int], steps: in
     fresh = [rng.bit_generator.state for rng in deciding]
     work = Teamwork(experiment.cells, team, experiment.starts, experiment.motion, timing.belief_step, deciding)
     eyes, headings, cells = [work.positions], [work.headings], [work.cells]
-    held_up, unseen = work.idle >= HELD_UP, [1.0 - work.beliefs[:, 0]]
+    held_up = work.idle >= HELD_UP
     for k in range(steps):
         work.step(k * timing.physics_step, timing.physics_step)
         eyes.append(work.positions)
@@ -104,7 +101,6 @@ def run_team(experiment: Experiment, method: int, runs: Sequence[int], steps: in
         held_up |= work.idle >= HELD_UP
         if (k + 1) % timing.steps_per_belief == 0:
             work.learn()
-            unseen.append(1.0 - work.beliefs[:, 0])
     tracks, looks, places = np.array(eyes), np.array(headings), np.array(cells)
     chosen = np.bincount([choice.run for choice in work.choices], minlength=len(runs))
     spent = (clock.perf_counter() - begun) / len(runs)
@@ -114,7 +110,6 @@ def run_team(experiment: Experiment, method: int, runs: Sequence[int], steps: in
             eyes=np.ascontiguousarray(tracks[:, r]),
             headings=np.ascontiguousarray(looks[:, r]),
             cells=np.ascontiguousarray(places[:, r]),
-            unseen=np.array(unseen)[:, r],
             drew=deciding[r].bit_generator.state != fresh[r],
             decisions=int(chosen[r]),
             seconds=spent,

@@ -14,6 +14,7 @@ from geomsim.trials.bank import Meetings, meet
 from geomsim.trials.episodes import run_episodes
 from geomsim.trials.experiment import Experiment, Row
 from geomsim.trials.fidelity import Forecast, forecast
+from geomsim.trials.foresight import foresee
 from geomsim.trials.results import MethodRun
 from geomsim.trials.store import Store
 from geomsim.trials.teamruns import TeamRun, run_team
@@ -28,7 +29,7 @@ _FIRST_ROUND, _FURTHER = 75.0, 4
 #: most evaders in one space: with more the broad phase costs more than it saves
 _BLOCK = 500
 
-#: most runs of a team that are followed in the cell model: where evaders react each trial has one of its own
+#: most runs of a team that a forecast follows: where evaders react each trial has one of its own
 _FORECASTS = 20
 
 #: trials in a task of the separate engine
@@ -96,7 +97,7 @@ class Work:
             self._take(found)
 
     def settle(self) -> None:
-        """Learn what does not depend on evaders: whether chance had a part, and what the cell model says."""
+        """Learn what does not depend on evaders: whether chance had a part, and what is predicted."""
         tasks = []
         for m in self.runs:
             self._run([(m, [0])], max(self._reaches(m, 1)))
@@ -104,7 +105,8 @@ class Work:
             reaches = self._reaches(m, runs)[:_FORECASTS]
             for steps in sorted(set(reaches)):
                 self._run([(m, [r for r, reach in enumerate(reaches) if reach == steps])], steps)
-            met = [self.runs[m][r].cut(steps, sight=False) for r, steps in enumerate(reaches)]
+            sight = self.experiment.capture == "sight"
+            met = [self.runs[m][r].cut(steps, sight=sight) for r, steps in enumerate(reaches)]
             tasks.append((self.experiment, m, met))
         self.forecasts = dict(self.workforce.do(_numbered_forecast, tasks))
 
@@ -217,4 +219,5 @@ def _numbered_run(experiment: Experiment, method: int, runs: list[int], steps: i
 
 
 def _numbered_forecast(experiment: Experiment, method: int, runs: list[TeamRun]) -> tuple[int, Forecast]:
-    return method, forecast(experiment, runs)
+    predict = foresee if experiment.capture == "sight" else forecast
+    return method, predict(experiment, runs)

@@ -26,15 +26,14 @@ import numba
 import numpy as np
 import pymunk
 
-from discretize import CellMap, convex_cells
+from discretize import CellMap, WallGrid, convex_cells
+from discretize.raycast import free_line
 from geomsim import Evader, Random, Sensor, Team, Timing
 from geomsim.trials.bank import Bank, meet
 from geomsim.trials.episodes import run_episodes
 from geomsim.trials.experiment import Experiment
-from geomsim.trials.kernels import _free
 from geomsim.trials.methods import Method
 from geomsim.trials.teamruns import TeamRun, run_team
-from geomsim.trials.walls import WallGrid
 from geomsim.walking import Routes
 from maps import read_plan
 from planners import AreaSpeedDegree
@@ -152,7 +151,7 @@ def _bare(grid, eyes, lines, marks, ends, ways, count, starts, steps, dice):
             y = lines[edge, leg, 1] + share * (lines[edge, leg + 1, 1] - lines[edge, leg, 1])
             for i in range(3):
                 ex, ey = eyes[t, i, 0], eyes[t, i, 1]
-                if math.hypot(x - ex, y - ey) < np.inf and _free(grid, ex, ey, x, y):
+                if math.hypot(x - ex, y - ey) < np.inf and free_line(grid, ex, ey, x, y):
                     seen += 1
     return seen
 

@@ -72,6 +72,14 @@ def test_figures_in_vectors_group_heuristics_and_are_the_same_again(
     assert (code, "bmp" in err) == (2, True)
 
 
+def test_by_sight_too(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    argv = ["house", "--capture", "sight", "--time-limit", "500", "--json"]
+    more = ["--methods", "decoupled-entropy-1", "--trials", "30", "--workers", "1", "--no-figures"]
+    m = json.loads(run(capsys, "compare", *argv, *more, "--out", str(tmp_path))[1])["methods"][0]
+    told = json.loads(run(capsys, "predict", *argv, "--cost", "entropy", "--depth", "1")[1])
+    assert m["predicted_mean"] == pytest.approx(told["expected_time"], rel=0.02)
+
+
 def test_text_and_resumption(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     argv = ["compare", "house", *FAST, "--out", str(tmp_path), "--reference", "random", "--no-figures"]
     code, out, _ = run(capsys, *argv)

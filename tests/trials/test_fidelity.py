@@ -7,8 +7,8 @@ import pytest
 
 from discretize import CellMap
 from geomsim import Decoupled, Evader, Random, Sensor, Stationary, Still, Team, Timing
+from geomsim.curves import mean_time
 from geomsim.trials import Trials, run_trials
-from geomsim.trials.fidelity import _mean
 from planners import SearchGraph
 
 
@@ -93,7 +93,7 @@ def test_robots_that_notice_slowly(house: CellMap) -> None:
 def test_a_run_goes_on_as_it_ended(limit: float) -> None:
     free, step = np.exp(-0.01 * np.arange(300)), 0.5
     expected = step / (1 - math.exp(-0.01)) * (1 - math.exp(-0.02 * limit))
-    assert _mean(free, step, limit) == pytest.approx(expected, rel=0.03)
+    assert mean_time(free, step, limit) == pytest.approx(expected, rel=0.03)
 
 
 def test_prediction_and_world_agree(house: CellMap) -> None:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import shapely
 
-from discretize import CellMap
+from discretize import CellMap, WallGrid
+from discretize.raycast import seen_pairs
 from geomsim.sensing import Sensor
-from geomsim.trials.kernels import Looked, Lookers, blocked_moves, first_looks, first_meetings, seen_pairs
-from geomsim.trials.walls import WallGrid
+from geomsim.trials.kernels import Looked, Lookers, blocked_moves, first_looks, first_meetings
 from geomsim.world import World, count_wall_crossings
 
 

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 import shapely
 
-from discretize import convex_cells
+from discretize import WallGrid, convex_cells
 from geomsim import Evader, Random, Team, Timing
 from geomsim.trials.bank import Bank
 from geomsim.trials.experiment import Experiment
 from geomsim.trials.kernels import blocked_moves
 from geomsim.trials.methods import Method
 from geomsim.trials.teamruns import run_team
-from geomsim.trials.walls import WallGrid
 from geomsim.world import count_wall_crossings
 from maps import read_plan
 from planners import AreaSpeedDegree
