@@ -12,7 +12,7 @@ from maps.errors import PlanError
 from maps.floorplan import FloorPlan, Repair
 from maps.noise import Mask
 from maps.pictures import read_picture
-from maps.raster import plan_from_mask
+from maps.raster import plan_from_mask, refuse_noise
 from maps.tracing import straighten, trace
 from maps.units import check_resolution
 
@@ -44,7 +44,9 @@ def read_image(path: Path, *, resolution: float | None = None, structure: bool |
         raise PlanError(f"{where}: a picture does not say how large it is; give its resolution in metres a pixel.")
     metres = check_resolution(resolution, where)
     brightness, opaque = read_picture(path, where)
-    free, repairs = _without_outside((brightness >= WHITE) & opaque, metres)
+    white = (brightness >= WHITE) & opaque
+    refuse_noise(white, where)
+    free, repairs = _without_outside(white, metres)
     return plan_from_mask(free, metres, name=path.stem, source=where, structure=structure, repairs=repairs)
 
 

@@ -16,7 +16,7 @@ from maps.making import make_plan
 from maps.noise import NARROW, Mask, without_pin_holes, without_rays, without_specks
 from maps.tracing import straighten, trace
 
-__all__ = ["MOST_SIDES", "plan_from_mask"]
+__all__ = ["MOST_SIDES", "plan_from_mask", "refuse_noise"]
 
 MOST_SIDES = 2_000_000
 """Sides that free pixels may share with others. A scan of 16 million pixels has some hundred thousand; what takes
@@ -72,12 +72,7 @@ def plan_from_mask(
         raise PlanError(f"{source}: there is no free space in it; none of its {free.size} pixels is free.")
     if free.all():
         raise PlanError(f"{source}: there is no wall in it; all of its {free.size} pixels are free.")
-    sides = int(np.count_nonzero(free[1:] != free[:-1])) + int(np.count_nonzero(free[:, 1:] != free[:, :-1]))
-    if sides > MOST_SIDES:
-        raise PlanError(
-            f"{source}: this is noise and no map of a building; free and other pixels meet in {sides} places, and "
-            f"{MOST_SIDES} are the most."
-        )
+    refuse_noise(free, source)
 
     def place(xy: NDArray[np.float64]) -> NDArray[np.float64]:
         turn = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])
@@ -102,3 +97,13 @@ def plan_from_mask(
     outline = trace(free)
     outline = straighten(outline, tolerance) if tolerance else outline
     return make_plan(shapely.transform(outline, place), name=name, source=source, repairs=done)
+
+
+def refuse_noise(free: NDArray[np.bool_], source: str) -> None:
+    """Raise PlanError for a picture whose free and other pixels meet too often for a map of a building."""
+    sides = int(np.count_nonzero(free[1:] != free[:-1])) + int(np.count_nonzero(free[:, 1:] != free[:, :-1]))
+    if sides > MOST_SIDES:
+        raise PlanError(
+            f"{source}: this is noise and no map of a building; free and other pixels meet in {sides} places, and "
+            f"{MOST_SIDES} are the most."
+        )
