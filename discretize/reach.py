@@ -14,7 +14,7 @@ from discretize.navmesh import NavMesh, navmesh_of
 from discretize.sharing import points_of, segment_tree
 from maps import FreeSpace
 
-__all__ = ["Reach", "reach_of"]
+__all__ = ["VOID", "Reach", "reach_of"]
 
 _QUADRANT = 16
 """Chords for a quarter of a circle where the boundary goes around a corner of a wall."""
@@ -25,7 +25,7 @@ _LONGEST_CHORD = 1.5 * pi / (2 * _QUADRANT)
 _SPECK = 0.05
 """A place in which a body can stand but hardly move is no part of the reach beside a larger one, square metres."""
 
-_VOID = 50.0
+VOID = 50.0
 """Nor is one smaller than this, in squares of the radius, where no body twice as wide can be: the inside of a wall."""
 
 _SHORT = 1e-6
@@ -257,7 +257,7 @@ def reach_of(space: FreeSpace, radius: float) -> Reach:
 
 def _is_room(part: shapely.Polygon, radius: float) -> bool:
     """Whether a place that is cut off from a larger one is worth a body's while."""
-    return part.area > _SPECK and (part.area > _VOID * radius**2 or not part.buffer(-radius).is_empty)
+    return part.area > _SPECK and (part.area > VOID * radius**2 or not part.buffer(-radius).is_empty)
 
 
 def _tiles(part: shapely.Polygon) -> list[shapely.Polygon]:

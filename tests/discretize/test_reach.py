@@ -5,7 +5,7 @@ import pytest
 import shapely
 from hypothesis import given, reject, settings
 
-from discretize.reach import reach_of
+from discretize.reach import VOID, reach_of
 from maps import FloorPlan
 from tests.discretize.plans import on_grid, shard_plans
 
@@ -36,7 +36,10 @@ def test_reach_keeps_its_distance(plan):
     for part in reach.parts:
         assert walls.distance(part) >= RADIUS - 1e-9
     loose = shapely.set_precision(plan.space, 0).buffer(-RADIUS - 0.002, quad_segs=64)
-    assert loose.difference(reach.area).area <= 0.05 * max(len(shapely.get_parts(loose)), 1)
+    for part in shapely.get_parts(loose):
+        # a place cut off from a larger one may be left out where no body twice as wide can be: the inside of a wall
+        hollow = part.area < VOID * RADIUS**2 and part.buffer(-RADIUS).is_empty
+        assert hollow or part.difference(reach.area).area <= 0.05
 
 
 @settings(max_examples=60, deadline=None)
