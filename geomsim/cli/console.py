@@ -9,6 +9,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any
 
 __all__ = ["complain", "finish_stdout", "progress", "say", "say_json", "speak_plainly", "tally"]
@@ -18,7 +19,12 @@ _LONGEST = 1000
 
 
 def speak_plainly() -> None:
-    """Let stdout and stderr show what their encoding has no signs for as escapes, instead of failing."""
+    """Let stdout and stderr show what their encoding has no signs for as escapes, instead of failing.
+
+    A stderr that the caller has closed goes to nowhere: libraries write to it without asking.
+    """
+    if sys.stderr is None:
+        sys.stderr = Path(os.devnull).open("w", encoding="utf-8")
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
