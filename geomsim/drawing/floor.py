@@ -168,7 +168,7 @@ def _dot_cover(cells: CellMap, view: Viewport, shape: tuple[int, int], unit: flo
 
 def _portal_cover(cells: CellMap, view: Viewport, shape: tuple[int, int], unit: float) -> NDArray[np.float32]:
     points = [view.zoomed(_ZOOM).pixels(portal.point)[None] for portal in cells.portals]
-    return _discs(shape, points, 1.7 * unit * _ZOOM)
+    return _discs(shape, points, 2.6 * unit * _ZOOM)
 
 
 def _discs(shape: tuple[int, int], centres: Iterable[NDArray[np.float64]], radius: float) -> NDArray[np.float32]:

@@ -52,7 +52,7 @@ class VectorFloor:
         for rings, colour in zip(self._cells, colours, strict=True):
             surface.polygon(rings, hex_colour(colour), seam=0.5 * unit)
         for portal in self._portals:
-            surface.disc(portal, 1.7 * unit, theme.portal)
+            surface.disc(portal, 2.6 * unit, theme.portal)
         surface.dotted(self._dotted, theme.dots, 1.9 * unit, 5.0 * unit)
         for ring in self._space:
             surface.line(ring, theme.wall, 3.0 * unit, closed=True)

@@ -90,7 +90,7 @@ class Scene {
     context.stroke(this.dotted);
     context.setLineDash([]);
     this.wallLines(context);
-    for (const portal of this.episode.data.portals) this.disc(context, this.pixel(portal), 1.7 * unit, theme.portal);
+    for (const portal of this.episode.data.portals) this.disc(context, this.pixel(portal), 2.6 * unit, theme.portal);
     if (numbers) {
       this.episode.data.cells.forEach((cell, k) => {
         const dark = belief && this.episode.share(step, k) > 0.3 * this.episode.data.top;
